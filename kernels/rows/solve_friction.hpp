@@ -2,6 +2,7 @@
 // the normal ones, and a twist within mu times those on their arms.
 #pragma once
 
+#include "kernels/lane/solve.hpp"
 #include "kernels/rows/contact_impulses.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -36,6 +37,35 @@ MW_INLINE Float stop_slip(const ContactBlock<Planar, N>& s, const FrictionBudget
   return clamp(p, -budget.bound, budget.bound);
 }
 
+// In space: impulses along two tangents against the slip (v1, v2), in a circle of radius `bound`.
+// `stop` is the effective mass of both, `brake` a scalar one. kSeldom: few blocks slip.
+template <bool kSeldom>
+MW_INLINE void stop_in_circle(const Sym2& stop, Float brake, Float v1, Float v2,
+                              const Float* before, Float bound, Float* after) {
+  const Float p1 = fnma(stop.xy, v2, fnma(stop.xx, v1, before[0]));
+  const Float p2 = fnma(stop.yy, v2, fnma(stop.xy, v1, before[1]));
+  after[0] = p1, after[1] = p2;
+  const Float square = fma(p1, p1, p2 * p2);
+  const Mask none = max(abs(p1), abs(p2)) <= Float(Real(0));
+  // Where worlds agree on what touches, nothing slips in most blocks: a root and a quotient less,
+  // and the same bits.
+  if (kSeldom && all(surely_within(square, bound) | none)) return;
+  // What slips is braked against the slip, which the impulse that would stop it is not: bodies
+  // rotate more easily about some axes than about others. The step that is cut back to the
+  // bound goes along the slip itself, by one mass, so that an impulse stays as it is only when
+  // it opposes the slip that it leaves; the passes of a step converge to that.
+  const Float least(Real(1e-30));
+  const Float c1 = fnma(brake, v1, before[0]), c2 = fnma(brake, v2, before[1]);
+  // Squares of what is small would be lost, in small worlds only.
+  const Float unit = Float(Real(1)) / max(max(abs(c1), abs(c2)), max(max(abs(p1), abs(p2)), least));
+  const Float b = bound * unit, u1 = c1 * unit, u2 = c2 * unit;
+  const Float w1 = p1 * unit, w2 = p2 * unit;
+  const Float scale = b / max(sqrt(fma(u1, u1, u2 * u2)), least);
+  const Mask slips = (b * b < fma(w1, w1, w2 * w2)) & !none;
+  after[0] = select(slips, c1 * scale, p1);
+  after[1] = select(slips, c2 * scale, p2);
+}
+
 // Solves the friction rows; returns the accumulated impulses after. kRelaxed: what they change is
 // multiplied by `relaxation`.
 template <bool kRelaxed = false, class S, int N, class A, class Velocities>
@@ -51,32 +81,10 @@ MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget
   } else {
     const auto n = load_as<typename S::Vec>(s.normal[0]);
     const Float v1 = along_tangent(s, 0, slip), v2 = along_tangent(s, 1, slip);
-    const Float m11 = Float::load(s.tangent_mass[0]), m12 = Float::load(s.tangent_mass[1]),
-                m22 = Float::load(s.tangent_mass[2]);
-    const Float p1 = fnma(m12, v2, fnma(m11, v1, budget.before[0]));
-    const Float p2 = fnma(m22, v2, fnma(m12, v1, budget.before[1]));
-    after[0] = p1, after[1] = p2;
-    const Float square = fma(p1, p1, p2 * p2);
-    const Mask none = max(abs(p1), abs(p2)) <= Float(Real(0));
-    // Where worlds agree on what touches, nothing slips in most blocks: a root and a quotient less,
-    // and the same bits.
-    if (!Velocities::kIsDense || !all(surely_within(square, budget.bound) | none)) {
-      // What slips is braked against the slip, which the impulse that would stop it is not: bodies
-      // rotate more easily about some axes than about others. The step that is cut back to the
-      // bound goes along the slip itself, by one mass, so that an impulse stays as it is only when
-      // it opposes the slip that it leaves; the passes of a step converge to that.
-      const Float mass = Float::load(s.slip_mass), least(Real(1e-30));
-      const Float c1 = fnma(mass, v1, budget.before[0]), c2 = fnma(mass, v2, budget.before[1]);
-      // Squares of what is small would be lost, in small worlds only.
-      const Float unit =
-          Float(Real(1)) / max(max(abs(c1), abs(c2)), max(max(abs(p1), abs(p2)), least));
-      const Float b = budget.bound * unit, u1 = c1 * unit, u2 = c2 * unit;
-      const Float w1 = p1 * unit, w2 = p2 * unit;
-      const Float scale = b / max(sqrt(fma(u1, u1, u2 * u2)), least);
-      const Mask slips = (b * b < fma(w1, w1, w2 * w2)) & !none;
-      after[0] = select(slips, c1 * scale, p1);
-      after[1] = select(slips, c2 * scale, p2);
-    }
+    const Sym2 stop{Float::load(s.tangent_mass[0]), Float::load(s.tangent_mass[1]),
+                    Float::load(s.tangent_mass[2])};
+    stop_in_circle<Velocities::kIsDense>(stop, Float::load(s.slip_mass), v1, v2, budget.before,
+                                         budget.bound, after);
     d[0] = after[0] - budget.before[0];
     d[1] = after[1] - budget.before[1];
     if constexpr (ContactBlock<S, N>::kTwist) {
