@@ -95,7 +95,7 @@ TypicalWorlds::TypicalWorlds(const Plan& plan, const Kernels& kernels, int steps
     save(saved, view.status, lanes);
     for (int l = 0; l < kernels::kLists; ++l) {
       if (!view.cache[l].keys) continue;
-      const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
+      const int row = kernels::cache_row_size(t, static_cast<kernels::ListId>(l));
       save(saved, view.cache[l].rows, lanes * (t.capacity[l] + kernels::kFirstRow) * row);
       save(saved, view.cache[l].keys, lanes * (t.capacity[l] + 1));
     }

@@ -4,7 +4,7 @@
 
 #include "kernels/lane/planar_inertia.hpp"
 #include "kernels/lane/spatial.hpp"
-#include "kernels/rows/contact_block.hpp"
+#include "kernels/rows/resistance.hpp"
 #include "kernels/work/solver_tables.hpp"
 #include "kernels/work/stages.hpp"
 
@@ -38,6 +38,14 @@ template <class S>
 void size_blocks(Work& w) {
   size_blocks<S, Free>(w, ListId::pair_multi, ListId::pair_single);
   size_blocks<S, Fixed>(w, ListId::fixed_multi, ListId::fixed_single);
+}
+
+std::size_t resistance_bytes(const Constants& t) {
+  switch (t.inertia_kind) {
+    case kernels::InertiaKind::planar: return sizeof(Resistance<Planar>);
+    case kernels::InertiaKind::isotropic: return sizeof(Resistance<Isotropic>);
+    default: return sizeof(Resistance<Tensor>);
+  }
 }
 
 // Blocks of a list: classes follow one another, and each has no more candidates in a lane than
@@ -271,7 +279,7 @@ void carve(const Constants& t, Work& w, Carver& c) {
   }
   if (t.has_sleep) {
     for (int l = 0; l < kLists; ++l) {
-      const int cached = kernels::cache_row_size(t.dimension, static_cast<ListId>(l));
+      const int cached = kernels::cache_row_size(t, static_cast<ListId>(l));
       c.take(w.kept_keys[l], count(lanes * t.capacity[l]));
       c.take(w.kept_rows[l], count(lanes * t.capacity[l] * cached));
     }
@@ -298,6 +306,8 @@ void carve(const Constants& t, Work& w, Carver& c) {
     c.take(list.blocks, count(list.max_blocks) * list.stride);
     list.bounces = nullptr;
     if (t.has_restitution) c.take(list.bounces, count(list.max_blocks) * list.bounce_stride);
+    list.resistances = nullptr;
+    if (t.has_resistance) c.take(list.resistances, count(list.max_blocks) * resistance_bytes(t));
   }
 }
 

@@ -38,8 +38,9 @@ enum class Feature {
   drag,         // drag factors
   gravity,      // gravity and its drift term
   joints,       // joints
+  resistance,   // rows against rolling and spinning (omitted if no candidate pair resists)
 };
-inline constexpr int kFeatureCount = 8;
+inline constexpr int kFeatureCount = 9;
 const char* to_string(Feature feature);
 
 // How the step finds pairs of shapes that are close. All methods find the same pairs in the same

@@ -106,10 +106,19 @@ struct SoftContact {
   bool operator==(const SoftContact&) const = default;
 };
 
+// Of rolling_resistance and torsional_resistance a pair uses the larger value. With the normal
+// force N of a contact, the moment against rolling is at most rolling_resistance N, that against
+// spinning about the normal torsional_resistance N. They are the rolling and torsional friction of
+// MuJoCo
+// (`friction` of a geom, in another order), and rolling_resistance is Box2D's rollingResistance
+// times the radius. A ball of radius R rests on slopes up to atan(rolling_resistance / R). Refused
+// with Solver::newton.
 struct Material {
-  double friction = 0.6;     // Coulomb coefficient; a pair uses the geometric mean
-  double restitution = 0.0;  // 0 to 1; a pair uses the larger value
-  SoftContact soft = {};     // Solver::newton only; that solver has no restitution
+  double friction = 0.6;            // Coulomb coefficient; a pair uses the geometric mean
+  double restitution = 0.0;         // 0 to 1; a pair uses the larger value
+  double rolling_resistance = 0;    // m
+  double torsional_resistance = 0;  // m, spatial scenes only
+  SoftContact soft = {};            // Solver::newton only; that solver has no restitution
 };
 
 // Two shapes collide if each one's category is in the other's mask. They must belong to different

@@ -135,8 +135,10 @@ template <>
 struct Members<Material> {
   static constexpr const char* name = "Material";
   static void visit(auto& value, auto&& visit) {
-    auto& [friction, restitution, soft] = value;
+    auto& [friction, restitution, rolling_resistance, torsional_resistance, soft] = value;
     visit("friction", friction), visit("restitution", restitution);
+    visit("rolling_resistance", rolling_resistance);
+    visit("torsional_resistance", torsional_resistance);
     visit("soft", soft, counted_if(soft != SoftContact{}, kOfNewton));
   }
 };

@@ -21,6 +21,8 @@ namespace manyworlds {
   X(mass, body, 1, "kg", "dynamic body; the inertia scales in proportion")                        \
   X(friction, shape, 1, "1", "Coulomb coefficient")                                               \
   X(restitution, shape, 1, "1", "0 to 1")                                                         \
+  X(rolling_resistance, shape, 1, "m", "Material::rolling_resistance")                            \
+  X(torsional_resistance, shape, 1, "m", "Material::torsional_resistance, spatial scenes only")   \
   X(gravity, world, 3, "m/s^2", "")                                                               \
   X(gravity_scale, body, 1, "1", "")                                                              \
   X(linear_drag, body, 1, "1/s", "")                                                              \
@@ -97,7 +99,7 @@ enum class Parameter {
   MW_PARAMETERS(MW_PARAMETER_ENUM)
 #undef MW_PARAMETER_ENUM
 };
-inline constexpr int kParameterCount = 65;
+inline constexpr int kParameterCount = 67;
 
 struct ParameterInfo {
   enum Owner { world, body, shape, joint, control, attractor };

@@ -32,6 +32,8 @@ struct SolverTable {
   Stage<Real> advance;  // displacement of the substep
   Stage<Real> relax;    // normal rows without bias, then friction
   Stage<Real> next;     // delta_v and warm start of the next substep
+  // Of plans with resistance: after warm_start, and after each pass with friction.
+  Stage<Real> warm_start_resistance, resist;
   Stage<Real> restitute;
   Stage<Real> store;  // impulses into the cache
   Stage<Real> leave;  // commit positions, orientations, velocities

@@ -35,6 +35,7 @@ static inline constexpr bool is_multi(ListId id) {
 template <class T>
 struct MaterialOf {
   T friction, restitution;
+  T rolling_resistance, torsional_resistance;  // m
 };
 
 // Free rotation of a body about its principal axes (kernels/motion/rotate.hpp). A kinematic body
@@ -167,6 +168,7 @@ struct SceneConstants {
   std::int32_t restitution_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
+  bool has_resistance;    // of contacts against rolling and spinning
   bool looks_ahead;       // contacts are of bodies turned ahead (work/half_turn.hpp)
   bool slows;             // by linear drag
   bool has_substeps;      // some stages of the solver: not free motion
@@ -248,8 +250,14 @@ static inline constexpr int velocity_row_size(Dimension d) {
 }
 
 // Stored impulses of one manifold (see rows/contact_cache.hpp).
-static inline constexpr int cache_row_size(Dimension d, ListId list) {
-  return !is_multi(list) ? 4 : d == Dimension::planar ? 8 : 16;
+static inline constexpr int cache_row_size(Dimension d, ListId list, bool resists) {
+  if (d == Dimension::planar) return is_multi(list) ? 8 : 4;
+  if (is_multi(list)) return resists ? 24 : 16;
+  return resists ? 8 : 4;
+}
+template <class Real>
+static inline constexpr int cache_row_size(const SceneConstants<Real>& t, ListId list) {
+  return cache_row_size(t.dimension, list, t.has_resistance);
 }
 
 }  // namespace manyworlds::kernels

@@ -5,6 +5,7 @@
 #include "kernels/direct/tree_velocities.hpp"
 #include "kernels/rows/contact_block.hpp"
 #include "kernels/rows/couple.hpp"
+#include "kernels/rows/resistance.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -30,6 +31,20 @@ inline void find_tree_masses(const Constants& t, const Group& g, const Work& w) 
   }
 }
 
+// What a wrench does to a side.
+template <class S>
+MW_INLINE TwistOf<S> response_of(const SideRows<S, Free>& rows, const TreeSide<S>& side,
+                                 const WrenchOf<S>& p) {
+  const TwistOf<S> free{apply(inertia_of<S>(rows), p.n), p.f * Float::load(rows.inv_mass)};
+  if (side.lanes == 0) return free;
+  return select(mask_from_bits(side.lanes), mul(side.compliance, p), free);
+}
+template <class S>
+MW_INLINE Float inv_mass_of(const SideRows<S, Free>& rows, const TreeSide<S>& side) {
+  const Float alone = Float::load(rows.inv_mass);
+  return side.lanes == 0 ? alone : select(mask_from_bits(side.lanes), side.inv_tree_mass, alone);
+}
+
 // Effective masses of a block in some lanes, by how its sides give way. A joint may hold a body
 // wholly along a normal, and rounding leave anything: no contact is heavier than its trees.
 template <class S, int N, class A>
@@ -40,22 +55,13 @@ void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& o
   const Float zero(Real(0));
   const Mask changes = mask_from_bits(lanes);
   const auto put = [&](Float x, Real* to) { select(changes, x, Float::load(to)).store(to); };
-  const auto response = [](const auto& rows, const TreeSide<S>& side, const WrenchOf<S>& p) {
-    const TwistOf<S> free{apply(inertia_of<S>(rows), p.n), p.f * Float::load(rows.inv_mass)};
-    if (side.lanes == 0) return free;
-    return select(mask_from_bits(side.lanes), mul(side.compliance, p), free);
-  };
   // Speed along the second of unit impulses along the first.
   const auto coupling = [&](const auto& wrench, int i, int j) {
-    Float k = dot(response(s.b, of_b, wrench(s.b, i)), wrench(s.b, j));
-    if constexpr (A::kMoves) k = k + dot(response(s.a, of_a, wrench(s.a, i)), wrench(s.a, j));
+    Float k = dot(response_of(s.b, of_b, wrench(s.b, i)), wrench(s.b, j));
+    if constexpr (A::kMoves) k = k + dot(response_of(s.a, of_a, wrench(s.a, i)), wrench(s.a, j));
     return k;
   };
 
-  const auto inv_mass_of = [](const auto& rows, const TreeSide<S>& side) {
-    const Float alone = Float::load(rows.inv_mass);
-    return side.lanes == 0 ? alone : select(mask_from_bits(side.lanes), side.inv_tree_mass, alone);
-  };
   Float least = inv_mass_of(s.b, of_b);
   if constexpr (A::kMoves) least = least + inv_mass_of(s.a, of_a);
 
@@ -98,6 +104,30 @@ void put_masses(const Constants& t, SidedBlock<S, N, A>& s, const TreeSide<S>& o
       put(inverse_or_zero(k), s.twist_mass);
     }
   }
+}
+
+// The same of its resistance. A joint may hold a body wholly against turning, and rounding leave
+// anything: a share of what the body's tree would do at the body's radius of gyration bounds it.
+template <class S, int N, class A>
+void put_turning(const SidedBlock<S, N, A>& s, const TreeSide<S>& of_a, const TreeSide<S>& of_b,
+                 std::uint32_t lanes, Resistance<S>& r) {
+  using Ang = typename S::Ang;
+  constexpr Real kShare = Real(1.0 / 16);
+  const auto give = [](const SideRows<S, Free>& rows, const TreeSide<S>& side, Ang p, Ang q) {
+    const WrenchOf<S> about_p{p, zero_of<typename S::Vec>()}, about_q{q, about_p.f};
+    const Float k = dot(response_of(rows, side, about_p), about_q);
+    if (side.lanes == 0) return k;
+    const Float alone = turn(p, inertia_of<S>(rows), q);
+    const Float lighter = side.inv_tree_mass * inverse_or_zero(Float::load(rows.inv_mass));
+    return select(mask_from_bits(side.lanes), fma(alone * kShare, lighter, k), k);
+  };
+  const auto normal = load_as<typename S::Vec>(s.normal[0]);
+  const TurningMasses m = turning_masses(r, normal, [&](Ang p, Ang q) {
+    Float k = give(s.b, of_b, p, q);
+    if constexpr (A::kMoves) k = k + give(s.a, of_a, p, q);
+    return k;
+  });
+  put_masses(m, mask_from_bits(lanes), r);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

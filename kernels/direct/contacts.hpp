@@ -33,13 +33,14 @@ class TreeContacts {
   // Effective masses. kTree: as parts of trees give way, else as free bodies do.
   template <bool kTree>
   void weigh() const {
-    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&) {
+    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       TreeSide<S> a{}, b = load_tree_side<S, kDense>(w_, s.offset_b, s.body_b, s.mask);
       if constexpr (A::kMoves) a = load_tree_side<S, kDense>(w_, s.offset_a, s.body_a, s.mask);
       const std::uint32_t lanes = a.lanes | b.lanes;
       if (lanes == 0) return;
       if constexpr (!kTree) a.lanes = b.lanes = 0;
       put_masses(t_, s, a, b, lanes);
+      if (t_.has_resistance) put_turning(s, a, b, lanes, resistance_at<S>(list, i));
     });
   }
 
@@ -69,6 +70,23 @@ class TreeContacts {
         solve_block<kDense, kPass>(t_, w_, s);
       }
     });
+    if constexpr (kPass == Pass::relax) {
+      if (t_.has_resistance) resist_all(response);
+    }
+  }
+  void resist_all(const TreeResponse<S, kDense>& response) const {
+    for_each_resistance<S>(
+        w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&, Resistance<S>& r) {
+          if (meets_tree(s)) {
+            TreeVelocities<S, A, kDense> v(response, w_, s);
+            solve_resistance(s, r, v);
+            v.store(s);
+          } else {
+            RowVelocities<S, A, kDense> v(w_, s);
+            solve_resistance(s, r, v);
+            v.store(w_, s);
+          }
+        });
   }
   // visit(body, lanes) for the bodies that move at both ends of a block, or of all blocks.
   template <int N, class A, class Visit>

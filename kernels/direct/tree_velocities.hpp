@@ -55,6 +55,20 @@ MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec direct
   v.act({moment, direction * amount}, free);
 }
 template <class S>
+MW_INLINE void add_moment(const SideRows<S, Free>& side, typename S::Ang moment,
+                          TreeVelocity<S>& v) {
+  Velocity<S> free = v;
+  add_moment(side, moment, free);
+  v.act({moment, zero_of<typename S::Vec>()}, free);
+}
+template <class S>
+MW_INLINE void take_moment(const SideRows<S, Free>& side, typename S::Ang moment,
+                           TreeVelocity<S>& v) {
+  Velocity<S> free = v;
+  take_moment(side, moment, free);
+  v.act({-moment, zero_of<typename S::Vec>()}, free);
+}
+template <class S>
 MW_INLINE void take_impulse(const SideRows<S, Free>& side, typename S::Vec p,
                             typename S::Ang moment, TreeVelocity<S>& v) {
   Velocity<S> free = v;

@@ -1,12 +1,15 @@
 // Stored impulses, one row per manifold and lane, for warm starting the next step:
-//   one point           normal impulse, friction impulse as a world vector
-//   planar, two points  x0 x1 l0 l1 | code f 0 0
+//   planar, one point   l fx fy m
+//   planar, two points  x0 x1 l0 l1 | code f m 0
+//   spatial, one point  l fx fy fz
 //   spatial, four       x0..x3 | y0..y3 | l0..l3 | code f1 f2 twist
+// and in space, of plans with resistance, mx my mz 0, which four points round up to 8 numbers.
+// l: along the normal; f, m: friction and the moment of resistance, as world vectors of one point.
 // x, y is the place of a point on the reference feature. Rows lie in the order of their keys, so
 // the format does not depend on the layout that made them.
 #pragma once
 
-#include "kernels/rows/contact_block.hpp"
+#include "kernels/rows/resistance.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -19,9 +22,9 @@ class CacheWriter {
   }
 
   template <class S, int N>
-  void put(const ContactBlock<S, N>& s, ListId list) {
+  void put(const ContactBlock<S, N>& s, const Resistance<S>* resistance, ListId list) {
     const int id = static_cast<int>(list);
-    const int row = kernels::cache_row_size(t_.dimension, list);
+    const int row = kernels::cache_row_size(t_, list);
     const std::uint32_t mask = s.mask & ~w_.frozen;
     const Ints lanes = Ints::lanes(), place = Ints::load(place_[id]);
     // Lanes without this contact write to a row that nobody reads.
@@ -31,7 +34,19 @@ class CacheWriter {
     ((to + lanes) * Ints(row)).store(o);
     scatter(Ints::load(s.key), mask, g_.cache[id].keys, place + lanes);
     (place + select(mask, Ints(kLanes), Ints(0))).store(place_[id]);
-    write(s, g_.cache[id].rows, o);
+    Float amount[S::kAng];
+    for (int i = 0; i < S::kAng; ++i) {
+      amount[i] = resistance ? Float::load(resistance->impulse[i]) : Float(Real(0));
+    }
+    Real* const rows = g_.cache[id].rows;
+    if constexpr (S::kDim == 2) {
+      write(s, amount[0], rows, o);
+    } else {
+      write(s, rows, o);
+      if (!resistance) return;
+      const Vec3 moment = moment_of(s, *resistance, amount);
+      store_rows4(rows + kMomentRow<S, N>, o, moment.x, moment.y, moment.z, Real(0));
+    }
   }
 
   // Ends every lane's keys, after merging in those of sleeping pairs.
@@ -59,7 +74,7 @@ class CacheWriter {
   // Two ascending lists into one, from the back, in the place of the first.
   void merge_kept(int id, int l) {
     const int capacity = t_.capacity[id];
-    const int row = kernels::cache_row_size(t_.dimension, static_cast<ListId>(id));
+    const int row = kernels::cache_row_size(t_, static_cast<ListId>(id));
     std::int32_t* keys = g_.cache[id].keys + l;
     Real* rows = g_.cache[id].rows + (kernels::kFirstRow * kLanes + l) * row;
     const std::int32_t* kept_keys = w_.kept_keys[id] + l * capacity;
@@ -75,26 +90,27 @@ class CacheWriter {
     }
   }
 
+  void write(const ContactBlock<Planar, 1>& s, Float moment, Real* rows, const std::int32_t* o) {
+    const Vec2 p = t_.has_friction ? load_as<Vec2>(s.tangent[0]) * Float::load(s.tangent_impulse[0])
+                                   : zero_of<Vec2>();
+    store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, moment);
+  }
   template <class S>
   void write(const ContactBlock<S, 1>& s, Real* rows, const std::int32_t* o) {
-    const auto t = load_as<typename S::Vec>(s.tangent[0]);
-    const Float f = Float::load(s.tangent_impulse[0]);
-    if (!t_.has_friction) {
-      store_rows4(rows, o, Float::load(s.impulse[0]), Real(0), Real(0), Real(0));
-    } else if constexpr (S::kDim == 2) {
-      store_rows4(rows, o, Float::load(s.impulse[0]), t.x * f, t.y * f, Real(0));
-    } else {
-      const auto n = load_as<Vec3>(s.normal[0]);
-      const Vec3 p = fma(cross(n, t), Float::load(s.tangent_impulse[1]), t * f);
-      store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, p.z);
+    Vec3 p = zero_of<Vec3>();
+    if (t_.has_friction) {
+      const auto n = load_as<Vec3>(s.normal[0]), t = load_as<Vec3>(s.tangent[0]);
+      const Float first = Float::load(s.tangent_impulse[0]);
+      p = fma(cross(n, t), Float::load(s.tangent_impulse[1]), t * first);
     }
+    store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, p.z);
   }
-  void write(const ContactBlock<Planar, 2>& s, Real* rows, const std::int32_t* o) {
+  void write(const ContactBlock<Planar, 2>& s, Float moment, Real* rows, const std::int32_t* o) {
     const Float zero(Real(0));
     const Float f = t_.has_friction ? Float::load(s.tangent_impulse[0]) : zero;
     store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
                 Float::load(s.impulse[0]), Float::load(s.impulse[1]));
-    store_rows4(rows + 4, o, Float::load(s.code), f, zero, zero);
+    store_rows4(rows + 4, o, Float::load(s.code), f, moment, zero);
   }
   template <class S>
   void write(const ContactBlock<S, 4>& s, Real* rows, const std::int32_t* o) {

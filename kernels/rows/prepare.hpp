@@ -9,6 +9,7 @@
 #include "kernels/rows/couple.hpp"
 #include "kernels/rows/friction.hpp"
 #include "kernels/rows/record.hpp"
+#include "kernels/rows/resistance.hpp"
 #include "kernels/rows/rest_speed.hpp"
 #include "kernels/rows/touch.hpp"
 #include "kernels/rows/touched.hpp"
@@ -156,13 +157,18 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   alignas(64) std::int32_t at[kLanes];
   find_stored(t, g, w, list, mask, key, at);
   StoredImpulses<N> stored;
-  carry_impulses(g.cache[static_cast<int>(list)].rows, at, m, s, stored);
+  const Real* const rows = g.cache[static_cast<int>(list)].rows;
+  carry_impulses(rows, at, m, s, stored);
   for (int i = 0; i < N; ++i) stored.normal[i].store(s.impulse[i]);
   if constexpr (N > 1 || !A::kMoves) {
     (max(-approach.pull.relative, Real(0)) * Float(t.h)).store(s.press);
   }
   if (t.has_friction) {
     put_friction(t, g, sides, code, m, active, sums.anchors, sums.count, stored, s);
+  }
+  if (t.has_resistance) {
+    auto& resistance = resistance_at<S>(blocks, blocks.count - 1);
+    put_resistance(t, g, sides, code, m, s, rows, at, stored, resistance);
   }
   if (t.has_restitution) {
     auto& bounce = bounce_at<S, N>(blocks, blocks.count - 1);

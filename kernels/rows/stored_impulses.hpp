@@ -23,7 +23,7 @@ inline void find_stored(const Constants& t, const Group& g, Work& w, ListId list
   found.store(w.key_at_cursor[id]);
   const Ints row = select((found == wanted) & mask, at + Ints(kernels::kFirstRow * kLanes),
                           Ints(kernels::kZeroRow * kLanes));
-  const Ints size(kernels::cache_row_size(t.dimension, list));
+  const Ints size(kernels::cache_row_size(t, list));
   ((row + lanes) * size).store(offset);
 }
 

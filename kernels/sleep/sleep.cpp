@@ -234,7 +234,7 @@ void keep_sleeping_contacts(const Constants& t, const Group& g, Work& w) {
       const int capacity = t.capacity[id];
       if (capacity == 0) continue;
       const ListId list = static_cast<ListId>(id);
-      const int row = kernels::cache_row_size(t.dimension, list);
+      const int row = kernels::cache_row_size(t, list);
       int kept = 0;
       const std::int32_t* keys = g.cache[id].keys + l;
       const Real* rows = g.cache[id].rows + (kernels::kFirstRow * kLanes + l) * row;

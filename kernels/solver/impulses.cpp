@@ -3,10 +3,10 @@
 // d what a sweep has changed, per lane
 //   beta = |d|^2 / |d of the sweep before|^2, or 0 if that is more than 1 (or not a number)
 //   z += beta way,  way = beta way + d
-// The velocities follow by a warm start with beta way.
+// The velocities follow by a warm start with beta way. Moments of resistance stay with the sweeps.
 #include "kernels/joint/body.hpp"
 #include "kernels/lane/finite.hpp"
-#include "kernels/rows/contact_block.hpp"
+#include "kernels/rows/resistance.hpp"
 #include "kernels/work/solver_tables.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -34,7 +34,13 @@ MW_INLINE void for_each_impulse(const Constants& t, Work& w, Visit visit) {
 
 template <class S>
 void forget(const Constants& t, const Group&, kernels::Scratch* scratch) {
-  for_each_impulse<S>(t, work_of(scratch), [](Real* z, std::uint32_t) { Float(Real(0)).store(z); });
+  Work& w = work_of(scratch);
+  const Float zero(Real(0));
+  for_each_impulse<S>(t, w, [&](Real* z, std::uint32_t) { zero.store(z); });
+  if (!t.has_resistance) return;
+  for_each_block<S>(w, [&](auto&, int i, BlockList& list) {
+    for (auto& z : resistance_at<S>(list, i).impulse) zero.store(z);
+  });
 }
 
 template <class S>

@@ -6,6 +6,7 @@
 #include "kernels/rows/contact_cache.hpp"
 #include "kernels/rows/solve_list.hpp"
 #include "kernels/solver/energy.hpp"
+#include "kernels/solver/resist.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -56,6 +57,7 @@ struct Passes {
     });
     play_impacts<S, kDense>(t, w, active);
     if (t.has_friction) solve_friction_of_impacts<S, kDense>(t, w, active);
+    if (t.has_resistance) ResistancePasses<S, kDense>::resist_impacts(w);
     for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       finish_impact(t, s, bounce_at<S, N>(list, i));
     });
@@ -96,9 +98,10 @@ struct Passes {
   static void store(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     CacheWriter writer(t, g, w);
-    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList& list) {
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
       mark_reached<S, A, kDense>(w, s);
-      writer.put(s, static_cast<ListId>(&list - w.blocks));
+      writer.put(s, t.has_resistance ? &resistance_at<S>(list, i) : nullptr,
+                 static_cast<ListId>(&list - w.blocks));
     });
     writer.close();
     report_overflow(g, w);
@@ -128,6 +131,8 @@ struct Passes {
     out.bias = solve<Pass::bias>;
     out.advance = advance;
     out.relax = solve<Pass::relax>;
+    out.warm_start_resistance = ResistancePasses<S, kDense>::warm_start;
+    out.resist = ResistancePasses<S, kDense>::solve;
     out.next = next;
     out.restitute = restitute;
     out.store = store;

@@ -28,6 +28,7 @@ struct BlockList {
   std::size_t bounce_stride;  // bytes of a block's restitution rows
   unsigned char* blocks;
   unsigned char* bounces;
+  unsigned char* resistances;  // [block] Resistance
 };
 
 // Takes down contact points while the collide stages run: of one lane (Kernels::record), or the

@@ -31,17 +31,17 @@ Field = Literal[
 ]
 Parameter = Literal[
     "size", "density", "shape_position", "shape_rotation", "mass", "friction", "restitution",
-    "gravity", "gravity_scale", "linear_drag", "angular_drag", "armature", "damping", "stiffness",
-    "rest", "gain", "bias", "kp", "kv", "gear", "force_low", "force_high", "limit_solref",
-    "limit_solimp", "contact_solref", "contact_solimp", "limit_low", "limit_high", "motor_speed",
-    "motor_force", "drive_stiffness", "drive_damping", "drive_frequency", "drive_damping_ratio",
-    "motor_position", "limit_stiffness", "limit_damping", "limit_frequency",
-    "limit_damping_ratio", "spring_stiffness", "spring_damping", "spring_frequency",
-    "spring_damping_ratio", "length", "cone", "pulley_ratio", "control_point",
-    "control_direction", "break_force", "break_torque", "anchor_a", "anchor_b", "axes_a",
-    "axes_b", "initial_position", "initial_rotation", "initial_linear_velocity",
-    "initial_angular_velocity", "center_of_mass", "inertia_scale", "wind", "attractor_position",
-    "attractor_strength", "control_low", "control_high",
+    "rolling_resistance", "torsional_resistance", "gravity", "gravity_scale", "linear_drag",
+    "angular_drag", "armature", "damping", "stiffness", "rest", "gain", "bias", "kp", "kv",
+    "gear", "force_low", "force_high", "limit_solref", "limit_solimp", "contact_solref",
+    "contact_solimp", "limit_low", "limit_high", "motor_speed", "motor_force", "drive_stiffness",
+    "drive_damping", "drive_frequency", "drive_damping_ratio", "motor_position",
+    "limit_stiffness", "limit_damping", "limit_frequency", "limit_damping_ratio",
+    "spring_stiffness", "spring_damping", "spring_frequency", "spring_damping_ratio", "length",
+    "cone", "pulley_ratio", "control_point", "control_direction", "break_force", "break_torque",
+    "anchor_a", "anchor_b", "axes_a", "axes_b", "initial_position", "initial_rotation",
+    "initial_linear_velocity", "initial_angular_velocity", "center_of_mass", "inertia_scale",
+    "wind", "attractor_position", "attractor_strength", "control_low", "control_high",
 ]
 Draw = Literal["none", "uniform", "log_uniform"]
 Precision = Literal["f32", "f64"]
@@ -64,6 +64,7 @@ Observed = Literal[
 ]
 Feature = Literal[
     "orientation", "inertia", "friction", "restitution", "contacts", "drag", "gravity", "joints",
+    "resistance",
 ]
 BroadPhase = Literal["automatic", "all_pairs", "sort_and_sweep", "sparse"]
 Every = Literal["episode", "step"]

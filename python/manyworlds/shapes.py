@@ -197,10 +197,18 @@ class SoftContact:
 
 @dataclass(slots=True)
 class Material:
-    """Contact properties of a shape."""
+    """Contact properties of a shape.
+
+    With the normal force N of a contact, the moment against rolling is at most rolling_resistance N,
+    that against spinning about the normal torsional_resistance N. They are MuJoCo's rolling and
+    torsional friction, and rolling_resistance is Box2D's rollingResistance times the radius. A ball
+    of radius R rests on slopes up to atan(rolling_resistance / R). The newton solver refuses both.
+    """
 
     friction: float = 0.6  # Coulomb coefficient; a pair takes the geometric mean
     restitution: float = 0.0  # 0 to 1; a pair takes the larger
+    rolling_resistance: float = 0.0  # m; a pair takes the larger
+    torsional_resistance: float = 0.0  # m, spatial scenes only; a pair takes the larger
     # newton solver only, which uses the larger friction and no restitution
     soft: SoftContact = field(default_factory=SoftContact)
 

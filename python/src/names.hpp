@@ -48,10 +48,11 @@ MW_NAMES(ControlKind, MW_NAME(target_position), MW_NAME(target_speed), MW_NAME(t
          MW_NAME(torque), MW_NAME(joint_force));
 MW_NAMES(Parameter, MW_NAME(size), MW_NAME(density), MW_NAME(shape_position),
          MW_NAME(shape_rotation), MW_NAME(mass), MW_NAME(friction), MW_NAME(restitution),
-         MW_NAME(gravity), MW_NAME(gravity_scale), MW_NAME(linear_drag), MW_NAME(angular_drag),
-         MW_NAME(armature), MW_NAME(damping), MW_NAME(stiffness), MW_NAME(rest), MW_NAME(gain),
-         MW_NAME(bias), MW_NAME(kp), MW_NAME(kv), MW_NAME(gear), MW_NAME(force_low),
-         MW_NAME(force_high), MW_NAME(limit_solref), MW_NAME(limit_solimp), MW_NAME(contact_solref),
+         MW_NAME(rolling_resistance), MW_NAME(torsional_resistance), MW_NAME(gravity),
+         MW_NAME(gravity_scale), MW_NAME(linear_drag), MW_NAME(angular_drag), MW_NAME(armature),
+         MW_NAME(damping), MW_NAME(stiffness), MW_NAME(rest), MW_NAME(gain), MW_NAME(bias),
+         MW_NAME(kp), MW_NAME(kv), MW_NAME(gear), MW_NAME(force_low), MW_NAME(force_high),
+         MW_NAME(limit_solref), MW_NAME(limit_solimp), MW_NAME(contact_solref),
          MW_NAME(contact_solimp), MW_NAME(limit_low), MW_NAME(limit_high), MW_NAME(motor_speed),
          MW_NAME(motor_force), MW_NAME(drive_stiffness), MW_NAME(drive_damping),
          MW_NAME(drive_frequency), MW_NAME(drive_damping_ratio), MW_NAME(motor_position),
@@ -70,7 +71,7 @@ MW_NAMES(Precision, MW_NAME(f32), MW_NAME(f64));
 MW_NAMES(Isa, MW_NAME(scalar), MW_NAME(avx2), MW_NAME(avx512));
 MW_NAMES(ContactLayout, MW_NAME(automatic), MW_NAME(dense), MW_NAME(rows));
 MW_NAMES(Feature, MW_NAME(orientation), MW_NAME(inertia), MW_NAME(friction), MW_NAME(restitution),
-         MW_NAME(contacts), MW_NAME(drag), MW_NAME(gravity), MW_NAME(joints));
+         MW_NAME(contacts), MW_NAME(drag), MW_NAME(gravity), MW_NAME(joints), MW_NAME(resistance));
 MW_NAMES(BroadPhase, MW_NAME(automatic), MW_NAME(all_pairs), MW_NAME(sort_and_sweep),
          MW_NAME(sparse));
 MW_NAMES(Status, MW_NAME(ok), MW_NAME(non_finite), MW_NAME(out_of_range), MW_NAME(out_of_bounds),

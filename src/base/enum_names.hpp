@@ -36,8 +36,8 @@ MW_ENUM_TABLE(FrictionCone, elliptic, "cone", "pyramidal", "elliptic");
 MW_ENUM_TABLE(ControlKind, joint_force, "kind", "target_position", "target_speed", "thrust",
               "torque", "joint_force");
 MW_ENUM_TABLE(Draw, log_uniform, "draw", "none", "uniform", "log_uniform");
-MW_ENUM_TABLE(Feature, joints, "feature", "orientation", "inertia", "friction", "restitution",
-              "contacts", "drag", "gravity", "joints");
+MW_ENUM_TABLE(Feature, resistance, "feature", "orientation", "inertia", "friction", "restitution",
+              "contacts", "drag", "gravity", "joints", "resistance");
 MW_ENUM_TABLE(BroadPhase, sparse, "broad_phase", "automatic", "all-pairs", "sort-and-sweep",
               "sparse");
 MW_ENUM_TABLE(Precision, f64, "precision", "f32", "f64");

@@ -1,7 +1,7 @@
 // Which features a step needs, and why.
 #include <algorithm>
 
-#include "src/plan/plan_data.hpp"
+#include "src/plan/pair_kinds.hpp"
 #include "src/plan/reshaped.hpp"
 
 namespace manyworlds {
@@ -107,6 +107,11 @@ void choose_features(PlanData& plan) {
       any_pair(plan, most,
                [](const auto& a, const auto& b) { return a.restitution > 0 || b.restitution > 0; }),
       "some pairs bounce", "no pair bounces");
+
+  choose.set(
+      Feature::resistance,
+      any_pair(plan, most, [&](const auto& a, const auto& b) { return resists(a) || resists(b); }),
+      "some pairs resist rolling or spinning", "no pair resists rolling or spinning");
 
   const double friction = plan.colliders.empty() ? 0 : plan.colliders.front().material.friction;
   const auto differs = [&](const auto& shape) { return shape.material.friction != friction; };

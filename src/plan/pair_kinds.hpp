@@ -19,6 +19,10 @@ struct KindOfPair {
 // `fixed`: the first is, and stays A.
 KindOfPair kind_of_pair(kernels::ShapeKind a, kernels::ShapeKind b, bool fixed);
 
+inline bool resists(const Material& m) {
+  return m.rolling_resistance > 0 || m.torsional_resistance > 0;
+}
+
 // Classes of a sparse plan: how many pairs they have, without listing them. Throws SceneError when
 // there are more than keys can tell apart.
 void count_pairs(PlanData& plan);  // sparse_pairs.cpp

@@ -96,7 +96,7 @@ struct PlanClass {
 struct PlanVaries {
   bool masses = false;     // and inertias
   bool shapes = false;     // sizes, and places about the centre of mass
-  bool materials = false;  // friction, restitution
+  bool materials = false;  // numbers of Material
   bool delta_v = false;    // gravity
   bool drag = false;
   bool joints = false;   // limits, drives, springs, loads and frames of joints on bodies

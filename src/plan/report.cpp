@@ -36,7 +36,8 @@ PlanReport describe(const PlanData& plan) {
   for (int l = 0; stores && l < kernels::kLists; ++l) {
     const int capacity = plan.capacity[static_cast<std::size_t>(l)];
     if (capacity == 0) continue;
-    const int row = kernels::cache_row_size(plan.dimension(), static_cast<kernels::ListId>(l));
+    const int row = kernels::cache_row_size(plan.dimension(), static_cast<kernels::ListId>(l),
+                                            plan.has(Feature::resistance));
     const int bytes = (capacity + kernels::kFirstRow) * row * 4 + (capacity + 1) * 4;
     out.arrays.push_back({kLists[l],
                           "[" + std::to_string(capacity) + "][" + std::to_string(row) + "] + keys",

@@ -19,9 +19,9 @@ struct Alike {
   ShapeKind kind{};
   bool dynamic = false;
   Filter filter;
-  bool rough = false, bouncy = false;
+  bool rough = false, bouncy = false, resists = false;
   auto key() const {
-    return std::tuple(kind, dynamic, filter.category, filter.mask, rough, bouncy);
+    return std::tuple(kind, dynamic, filter.category, filter.mask, rough, bouncy, resists);
   }
 };
 struct Flock {
@@ -63,8 +63,8 @@ class Counter {
   Alike alike(const Planned& s, bool dynamic) const {
     const Shape& shape = extreme_.bodies[static_cast<std::size_t>(s.scene_body)]
                              .shapes[static_cast<std::size_t>(s.shape)];
-    return {s.kind, dynamic, shape.filter, shape.material.friction > 0,
-            shape.material.restitution > 0};
+    const Material& m = shape.material;
+    return {s.kind, dynamic, shape.filter, m.friction > 0, m.restitution > 0, resists(m)};
   }
   std::size_t put(std::vector<Flock>& flocks, const Alike& what) {
     auto& places = &flocks == &moving_ ? place_of_moving_ : place_of_fixed_;
@@ -147,7 +147,7 @@ class Counter {
   using Places = std::map<decltype(Alike().key()), std::size_t>;
 
   PlanData& plan_;
-  Scene extreme_;  // with the most friction and restitution that a world may have
+  Scene extreme_;  // with the largest numbers of materials that a world may have
   std::vector<Flock> moving_, fixed_;
   Places place_of_moving_, place_of_fixed_;
   int shapes_ = 0, fixed_shapes_ = 0;

@@ -75,6 +75,7 @@ void choose_stages(PlanData& plan) {
       !soft                         ? solver + " has no relaxation sweep"
       : plan.has(Feature::friction) ? "normal rows and friction, once per substep"
                                     : "normal rows, once per substep");
+  set(StepStage::resist, contacts && plan.has(Feature::resistance), why(Feature::resistance));
   set(StepStage::restitute, contacts && plan.has(Feature::restitution), why(Feature::restitution));
   set(StepStage::store, contacts, "impulses for the next step's warm start");
   const bool moving_casts = options.contact.cast_between_moving;

@@ -19,6 +19,7 @@ enum class StepStage {
   bias,
   advance,
   relax,
+  resist,
   restitute,
   store,
   finish,
@@ -26,11 +27,11 @@ enum class StepStage {
   audit,    // of energy, in some steps
   observe,  // of batches with observers
 };
-inline constexpr int kStepStages = 17;
+inline constexpr int kStepStages = 18;
 inline constexpr std::array<const char*, kStepStages> kStepStageNames = {
     "free_motion", "flight",     "begin",  "broad_phase", "collide", "tree",
-    "joints",      "warm_start", "bias",   "advance",     "relax",   "restitute",
-    "store",       "finish",     "settle", "audit",       "observe"};
+    "joints",      "warm_start", "bias",   "advance",     "relax",   "resist",
+    "restitute",   "store",      "finish", "settle",      "audit",   "observe"};
 inline const char* to_string(StepStage stage) {
   return kStepStageNames[static_cast<std::size_t>(stage)];
 }

@@ -26,7 +26,9 @@ void collect_variations(PlanData& plan) {
       }
       case Parameter::mass: varies.masses = true; break;
       case Parameter::friction:
-      case Parameter::restitution: varies.materials = true; break;
+      case Parameter::restitution:
+      case Parameter::rolling_resistance:
+      case Parameter::torsional_resistance: varies.materials = true; break;
       case Parameter::gravity:
       case Parameter::gravity_scale: varies.delta_v = true; break;
       case Parameter::linear_drag:

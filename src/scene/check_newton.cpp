@@ -124,6 +124,12 @@ class NewtonChecker {
       if (body.shapes[k].material.restitution != 0) {
         refuse(shape, "material.restitution", "is not 0", "0 only: contacts do not bounce");
       }
+      if (body.shapes[k].material.rolling_resistance != 0) {
+        refuse(shape, "material.rolling_resistance", "is not 0", "0 only");
+      }
+      if (body.shapes[k].material.torsional_resistance != 0) {
+        refuse(shape, "material.torsional_resistance", "is not 0", "0 only");
+      }
     }
     if (body.motion != Motion::dynamic || !is_held(i)) return;
     if (!body.linear_velocity.isZero(0)) {
@@ -225,12 +231,14 @@ class NewtonChecker {
 
   void check_variation(std::size_t i) {
     const Parameter p = scene_.variations[i].parameter;
-    const Parameter refused[] = {Parameter::restitution, Parameter::linear_drag,
+    const Parameter refused[] = {Parameter::restitution, Parameter::rolling_resistance,
+                                 Parameter::torsional_resistance, Parameter::linear_drag,
                                  Parameter::angular_drag};
     if (std::find(std::begin(refused), std::end(refused), p) == std::end(refused)) return;
     Checker at = all_.at("variation " + std::to_string(i));
     refuse(at, "parameter", std::string("is ") + info(p).name,
-           "all but restitution, linear_drag and angular_drag");
+           "all but restitution, rolling_resistance, torsional_resistance, linear_drag and "
+           "angular_drag");
   }
 
   Checker all_;

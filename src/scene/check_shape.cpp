@@ -34,6 +34,14 @@ void check_shape(Checker checker, const Body& body, const Shape& shape) {
   checker.not_negative("material.friction", shape.material.friction, "");
   check_soft_contact(checker, shape.material.soft);
   checker.between("material.restitution", shape.material.restitution, 0, 1);
+  checker.not_negative("material.rolling_resistance", shape.material.rolling_resistance, "m");
+  const double torsional = shape.material.torsional_resistance;
+  checker.not_negative("material.torsional_resistance", torsional, "m");
+  if (checker.planar() && torsional > 0) {
+    checker.add(
+        "material.torsional_resistance",
+        "is " + number_text(torsional) + ", must be 0: nothing spins about a normal in the plane");
+  }
 }
 
 }  // namespace manyworlds::detail

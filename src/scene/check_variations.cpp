@@ -97,6 +97,7 @@ const char* who_can(Parameter parameter) {
     case Parameter::shape_position:
     case Parameter::shape_rotation: return "a shape of a moving body";
     case Parameter::density: return "a dynamic body whose mass is not given";
+    case Parameter::torsional_resistance: return "a shape of a spatial scene";
     case Parameter::armature:
     case Parameter::damping:
     case Parameter::stiffness: return "a hinge, slider or ball joint";

@@ -92,6 +92,10 @@ auto* held_number(Of& scene, Parameter parameter, const NumberOwner& of, int com
   switch (parameter) {
     case Parameter::friction: return Pointer(&shape_of(scene, of).material.friction);
     case Parameter::restitution: return Pointer(&shape_of(scene, of).material.restitution);
+    case Parameter::rolling_resistance:
+      return Pointer(&shape_of(scene, of).material.rolling_resistance);
+    case Parameter::torsional_resistance:
+      return Pointer(&shape_of(scene, of).material.torsional_resistance);
     case Parameter::gravity_scale: return Pointer(&body_of(scene, of).gravity_scale);
     case Parameter::linear_drag: return Pointer(&body_of(scene, of).linear_drag);
     case Parameter::angular_drag: return Pointer(&body_of(scene, of).angular_drag);

@@ -132,6 +132,7 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
     case Parameter::control_high:
     case Parameter::friction:
     case Parameter::restitution:
+    case Parameter::rolling_resistance:
     case Parameter::contact_solref:
     case Parameter::contact_solimp:
     case Parameter::anchor_a:
@@ -142,6 +143,7 @@ bool can_vary(const Scene& scene, Parameter parameter, const NumberOwner& of) {
     case Parameter::initial_rotation:
     case Parameter::initial_linear_velocity:
     case Parameter::initial_angular_velocity: return body_of(scene, of).motion != Motion::fixed;
+    case Parameter::torsional_resistance: return scene.space == Space::spatial;
     case Parameter::size:
       return body_of(scene, of).motion != Motion::fixed &&
              sizes_of(shape_of(scene, of).geometry) > 0;

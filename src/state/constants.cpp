@@ -202,8 +202,9 @@ void Constants<Real>::fill(const PlanData& plan, int lane_index) {
     put(attractors_, i, attractor_constants<Real>(plan.scene.attractors[i]), lane_index);
   }
   const auto material = [&](std::size_t item, const Material& m) {
-    const kernels::MaterialOf<Real> value{static_cast<Real>(m.friction),
-                                          static_cast<Real>(m.restitution)};
+    const kernels::MaterialOf<Real> value{
+        static_cast<Real>(m.friction), static_cast<Real>(m.restitution),
+        static_cast<Real>(m.rolling_resistance), static_cast<Real>(m.torsional_resistance)};
     put(materials_, item, value, lane_index);
   };
   if (!parts_.materials) return;

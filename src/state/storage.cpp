@@ -18,7 +18,7 @@ Storage<Real>::Storage(const kernels::SceneConstants<Real>& tables, int groups, 
   for (std::size_t l = 0; stores && l < kernels::kLists; ++l) {
     const std::size_t capacity = index(t.capacity[l]);
     if (capacity == 0) continue;
-    const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
+    const int row = kernels::cache_row_size(t, static_cast<kernels::ListId>(l));
     cache_rows_[l] =
         AlignedBuffer<Real>(index(lane_count()) * (capacity + kernels::kFirstRow) * index(row));
     cache_keys_[l] = AlignedBuffer<std::int32_t>(index(lane_count()) * (capacity + 1));
@@ -64,7 +64,7 @@ kernels::GroupView<Real> Storage<Real>::group(int g) const {
   }
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
-    const int row = kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l));
+    const int row = kernels::cache_row_size(t, static_cast<kernels::ListId>(l));
     view.cache[l].rows =
         cache_rows_[l].data() + at * lanes * index(t.capacity[l] + kernels::kFirstRow) * index(row);
     view.cache[l].keys = cache_keys_[l].data() + at * lanes * index(t.capacity[l] + 1);
@@ -127,7 +127,7 @@ template <class Real>
 Real* Storage<Real>::rows_of(int lane_index, std::size_t list) const {
   const std::size_t rows = index(tables_.capacity[list] + kernels::kFirstRow);
   const std::size_t before = group_of(lane_index) * rows + kernels::kFirstRow;
-  const auto size = kernels::cache_row_size(tables_.dimension, static_cast<kernels::ListId>(list));
+  const auto size = kernels::cache_row_size(tables_, static_cast<kernels::ListId>(list));
   return cache_rows_[list].data() + (before * index(lanes_) + lane_of(lane_index)) * index(size);
 }
 
@@ -159,8 +159,7 @@ void Storage<Real>::keep_contacts(int lane_index, Keep keep) {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const auto list = static_cast<kernels::ListId>(l);
-    const std::size_t row = index(kernels::cache_row_size(t.dimension, list)),
-                      lanes = index(lanes_);
+    const std::size_t row = index(kernels::cache_row_size(t, list)), lanes = index(lanes_);
     std::int32_t* keys = keys_of(lane_index, l);
     Real* rows = rows_of(lane_index, l);
     std::size_t kept = 0;

@@ -74,6 +74,7 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   t.looks_ahead = plan.orientations_matter && plan.parts.empty() && !plan.has_trees();
   t.has_friction = plan.has(Feature::friction);
   t.has_restitution = plan.has(Feature::restitution);
+  t.has_resistance = plan.has(Feature::resistance);
   t.has_contacts = plan.has(Feature::contacts);
   t.has_joints = !plan.parts.empty();
   t.has_substeps = plan.runs(StepStage::begin);

@@ -153,8 +153,7 @@ void Storage<Real>::for_each_part(int a, int b, Visit&& visit) const {
   for (std::size_t l = 0; l < kernels::kLists; ++l) {
     if (cache_keys_[l].empty()) continue;
     const std::size_t capacity = index(t.capacity[l]);
-    const std::size_t row =
-        index(kernels::cache_row_size(t.dimension, static_cast<kernels::ListId>(l)));
+    const std::size_t row = index(kernels::cache_row_size(t, static_cast<kernels::ListId>(l)));
     in_lanes(Part::keys, cache_keys_[l], capacity + 1);
     Real *rows_a = rows_of(a, l), *rows_b = rows_of(b, l);
     for (std::size_t i = 0; i < capacity; ++i, rows_a += lanes * row, rows_b += lanes * row) {

@@ -79,6 +79,7 @@ class Builder {
     if (forgets()) add(to, StepStage::warm_start, impulses_.forget);
     add(to, StepStage::warm_start, solver_.apply_delta_v);
     add(to, StepStage::warm_start, solver_.warm_start);
+    add(to, StepStage::resist, solver_.warm_start_resistance);
     add(to, StepStage::warm_start, solver_.open);
     add(to, StepStage::joints, joints_.warm_start);
   }
@@ -104,6 +105,7 @@ class Builder {
       if (t_.joint_trees.bounded) round(StepStage::relax, trees_.relax_round, true);
     } else {
       add_carried(to, StepStage::relax, solver_.relax);
+      add_carried(to, StepStage::resist, solver_.resist);
     }
     ask_here(joints_.relax, solver_.relax);
   }
@@ -120,11 +122,15 @@ class Builder {
       add(to, StepStage::advance, sweeps_.part);
     }
   }
+  void sweep_once() {
+    add(out_.solve, StepStage::joints, joints_.bias);
+    add_carried(out_.solve, StepStage::bias, sweeps_.sweep);
+    add_carried(out_.solve, StepStage::resist, solver_.resist);
+  }
   // Projected Gauss-Seidel, and SOR, whose rows hold their relaxation.
   void sequential_impulse() {
     for (int i = 0; i < t_.solver.iterations; ++i) {
-      add(out_.solve, StepStage::joints, joints_.bias);
-      add_carried(out_.solve, StepStage::bias, sweeps_.sweep);
+      sweep_once();
     }
     advance();
   }
@@ -134,8 +140,7 @@ class Builder {
     for (int i = 0; i < t_.solver.iterations; ++i) {
       const bool last = i + 1 == t_.solver.iterations;
       if (!last) add(to, StepStage::warm_start, impulses_.remember);
-      add(to, StepStage::joints, joints_.bias);
-      add_carried(to, StepStage::bias, sweeps_.sweep);
+      sweep_once();
       if (last) break;
       add(to, StepStage::warm_start, impulses_.redirect);
       add(to, StepStage::joints, joints_.warm_start);
@@ -148,6 +153,7 @@ class Builder {
     for (int i = 0; i < t_.solver.iterations; ++i) {
       add(out_.solve, StepStage::joints, joints_.bias);
       add(out_.solve, StepStage::bias, sweeps_.sweep);
+      add(out_.solve, StepStage::resist, solver_.resist);
     }
     advance();
   }
