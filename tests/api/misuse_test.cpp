@@ -101,11 +101,11 @@ const std::vector<Misuse> kEnumsInScenes = {
              [](Scene& s) { s.variations = {vary(Parameter::friction, 0.1, 1, none<Draw>(3))}; }),
     {"broad_phase is 4, must be automatic, all-pairs, sort-and-sweep or sparse",
      [] { compile(crowd(Space::planar), {.broad_phase = none<BroadPhase>(4), .keep = {}}); }},
-    {"keep[1] is 8, must be orientation, inertia, ",
+    {"keep[1] is 9, must be orientation, inertia, ",
      [] {
-       compile(crowd(Space::planar), {.keep = {Feature::drag, none<Feature>(8)}});
+       compile(crowd(Space::planar), {.keep = {Feature::drag, none<Feature>(9)}});
      }},
-    {"feature is 8, must be", [] { plan_of().has(none<Feature>(8)); }},
+    {"feature is 9, must be", [] { plan_of().has(none<Feature>(9)); }},
     {"field is 17, must be position, orientation, linear_velocity, angular_velocity, "
      "generalized_position, generalized_velocity or generalized_acceleration",
      [] { components(none<Field>(17), Space::planar); }},

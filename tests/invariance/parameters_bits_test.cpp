@@ -15,9 +15,10 @@ Scene scene_of(const Batch& batch, int world) {
   const auto all = [&](Parameter p) { return numbers(batch, p, world); };
   const auto size = all(Parameter::size), density = all(Parameter::density),
              friction = all(Parameter::friction), restitution = all(Parameter::restitution),
-             mass = all(Parameter::mass), scale = all(Parameter::gravity_scale),
-             linear = all(Parameter::linear_drag), angular = all(Parameter::angular_drag),
-             gravity = all(Parameter::gravity);
+             rolling = all(Parameter::rolling_resistance),
+             torsional = all(Parameter::torsional_resistance), mass = all(Parameter::mass),
+             scale = all(Parameter::gravity_scale), linear = all(Parameter::linear_drag),
+             angular = all(Parameter::angular_drag), gravity = all(Parameter::gravity);
   scene.options.gravity = Vec3(gravity[0], gravity[1], gravity[2]);
   std::size_t shape = 0, state_body = 0;
   for (Body& body : scene.bodies) {
@@ -45,7 +46,8 @@ Scene scene_of(const Batch& batch, int world) {
         }
       }
       s.density = density[shape];
-      s.material = {friction[shape], restitution[shape]};
+      s.material = {friction[shape], restitution[shape], rolling[shape],
+                    torsional.empty() ? 0 : torsional[shape]};
       ++shape;
     }
     if (body.motion == Motion::fixed) continue;

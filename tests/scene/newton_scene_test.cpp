@@ -158,7 +158,7 @@ TEST_CASE("the newton solver names all that it does not take, at once",
           "control 2 'jet': kind is thrust, the newton solver supports joint_force only",
           "attractors are given, the newton solver supports none",
           "variation 1: parameter is restitution, the newton solver supports all but restitution, "
-          "linear_drag and angular_drag",
+          "rolling_resistance, torsional_resistance, linear_drag and angular_drag",
           "joint 3: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "
           "a series of joints by Joint::after",
           "joint 4: body_b is 3, which joint 1 holds already: the newton solver supports trees, or "

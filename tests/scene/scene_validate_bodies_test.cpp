@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "tests/support/scene_cases.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace manyworlds {
 namespace {
@@ -250,6 +251,26 @@ TEST_CASE("bodies and shapes without names are known by their index", "[fast][sc
   const std::vector<Issue> issues = validate(scene);
   REQUIRE(issues.size() == 1);
   CHECK(to_string(issues[0]) == "body 1, shape 1: half_extents.y is -0.2 m, must be > 0");
+}
+
+TEST_CASE("resistance is a length of contacts in space, or of rolling in the plane",
+          "[fast][scene][resistance]") {
+  Scene space = spatial(), plane = test::one_crate(Space::planar);
+  const auto issues = [](Scene& scene, double rolling, double torsional) {
+    Material& m = scene.bodies.back().shapes[0].material;
+    m.rolling_resistance = rolling, m.torsional_resistance = torsional;
+    std::vector<std::string> out;
+    for (const Issue& issue : validate(scene)) out.push_back(issue.message);
+    return out;
+  };
+  using Issues = std::vector<std::string>;
+  CHECK(issues(space, 0.1, 0.2) == Issues{});
+  CHECK(issues(space, -1, kNan).size() == 2);
+  CHECK(issues(plane, 0.1, 0) == Issues{});
+  CHECK(issues(plane, 0.1, 0.2) ==
+        Issues{"is 0.2, must be 0: nothing spins about a normal in the plane"});
+  space.options.solver.method = Solver::newton;
+  CHECK(issues(space, 0.1, 0.2) == Issues(2, "is not 0, the newton solver supports 0 only"));
 }
 
 TEST_CASE("all issues come at once, in the order of the scene", "[fast][scene]") {

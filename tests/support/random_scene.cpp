@@ -33,7 +33,7 @@ constexpr double kCell = 2.3;  // bounding radii from one body to the next: they
 
 class Maker {
  public:
-  explicit Maker(std::uint64_t seed) : seed_(seed), room_(seed, 0) {}
+  explicit Maker(std::uint64_t seed) : seed_(seed), room_(seed, 0), resistance_(seed, 1 << 22) {}
 
   RandomScene make() {
     planar_ = room_.chance(0.5);
@@ -124,6 +124,10 @@ class Maker {
   Shape shape(Dice& dice, Geometry geometry) {
     Shape out = shape_of(std::move(geometry), friction_ ? dice.between(0, 1.2) : 0,
                          bounces_ && dice.chance(0.7) ? dice.between(0, 1) : 0);
+    if (resists_) {
+      out.material.rolling_resistance = resistance_.between(0, 0.2) * unit_;
+      if (!planar_) out.material.torsional_resistance = resistance_.between(0, 0.2) * unit_;
+    }
     if (dice.chance(0.3)) out.density = rough_ ? dice.between(300, 3000) : dice.between(700, 1400);
     return out;
   }
@@ -284,9 +288,10 @@ class Maker {
   }
 
   std::uint64_t seed_;
-  Dice room_;
+  Dice room_, resistance_;  // of the scene, and against rolling and spinning
   Scene scene_;
   bool planar_ = false, crowded_ = false, driven_ = false, friction_ = true, bounces_ = false;
+  bool resists_ = resistance_.chance(0.25);
   bool filtered_ = false, still_air_ = true, rough_ = false, gains_nothing_ = true;
   int columns_ = 1;
   double unit_ = 1, cell_ = 1, wall_ = 1, fastest_ = 0;

@@ -16,10 +16,14 @@ Scene varied_crowd(Space space, bool polygons) {
                       vary(Parameter::density, 200, 2000, Draw::log_uniform),
                       vary(Parameter::friction, 0.1, 0.9),
                       vary(Parameter::restitution, 0, 0.6),
+                      vary(Parameter::rolling_resistance, 0, 0.05),
                       gravity_between(-11 * up_of(space), -9 * up_of(space)),
                       vary(Parameter::gravity_scale, 0.8, 1.2),
                       vary(Parameter::linear_drag, 0, 0.3),
                       vary(Parameter::angular_drag, 0, 0.3)};
+  if (space == Space::spatial) {
+    scene.variations.push_back(vary(Parameter::torsional_resistance, 0, 0.05));
+  }
   for (int body : {2, 5}) {
     Variation mass = vary(Parameter::mass, 50, 500);
     mass.body = BodyId(body);

@@ -164,6 +164,18 @@ Vec3 draw_axis(Random& random, Space space) {
   return space == Space::planar ? Vec3(0, 0, random.chance(0.5) ? 1 : -1) : random.direction();
 }
 
+void resist_in_some(Random& kind, Scene& scene, const Scale& scale) {
+  if (!kind.chance(1.0 / 3)) return;
+  for (Body& body : scene.bodies) {
+    const double rolling = scale.length * kind.uniform(0, 0.2);
+    const double torsional = scale.length * kind.uniform(0, 0.2);
+    for (Shape& s : body.shapes) {
+      s.material.rolling_resistance = rolling;
+      if (scene.space == Space::spatial) s.material.torsional_resistance = torsional;
+    }
+  }
+}
+
 MassProperties mass_of(const Scene& scene, BodyId body) {
   return mass_properties(scene, scene.at(body));
 }

@@ -34,6 +34,9 @@ Vec3 draw_direction(Random& random, Space space);
 // A vector about which bodies can turn: any, or z in the plane.
 Vec3 draw_axis(Random& random, Space space);
 
+// In a third of the kinds bodies resist rolling and spinning by up to 0.2 lengths.
+void resist_in_some(Random& kind, Scene& scene, const Scale& scale);
+
 // Mass and inertia at the start.
 MassProperties mass_of(const Scene& scene, BodyId body);
 // Inertia in world axes.

@@ -127,6 +127,7 @@ Drawn cluster(Random& kind, Random& state, const Scale& scale, Space space, Mome
     b.linear_velocity += whirl.cross(b.position);
     b.angular_velocity = draw_axis(state, space) * (spin * state.uniform(0, 1));
   }
+  resist_in_some(kind, out.scene, scale);
   out.steps = kClusterSteps;
   out.judge = momentum_judge(out.scene, which);
   return out;
@@ -170,6 +171,7 @@ Drawn drum(Random& kind, Random& state, const Scale& scale, Space space, Momentu
     b.linear_velocity = speed * draw_direction(state, space);
     b.angular_velocity = draw_axis(state, space) * (spin * state.uniform(0, 1));
   }
+  resist_in_some(kind, scene, scale);
   out.steps = kDrumSteps;
   out.judge = momentum_judge(scene, which);
   return out;

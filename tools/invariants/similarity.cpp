@@ -70,6 +70,8 @@ Scene in_units(const Scene& scene, const Unit& unit) {
       shape.geometry = in_units(shape.geometry, unit.length);
       shape.position *= unit.length;
       if (shape.density) *shape.density *= unit.density;
+      shape.material.rolling_resistance *= unit.length;
+      shape.material.torsional_resistance *= unit.length;
     }
   }
   for (Joint& joint : out.joints) joint = in_units(joint, unit, unit.mass(scene.space));
@@ -183,6 +185,7 @@ Scene draw_scene(Space space, Random& kind, Random& state, const Scale& scale) {
   for (std::size_t i = 1; joints && i < bodies.size(); ++i) {
     if (kind.chance(0.5)) scene.add(draw_joint(kind, scene, bodies[i - 1], bodies[i], scale));
   }
+  resist_in_some(kind, scene, scale);
   return scene;
 }
 
