@@ -77,15 +77,9 @@ class TreeContacts {
   void resist_all(const TreeResponse<S, kDense>& response) const {
     for_each_resistance<S>(
         w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&, Resistance<S>& r) {
-          if (meets_tree(s)) {
-            TreeVelocities<S, A, kDense> v(response, w_, s);
-            solve_resistance(s, r, v);
-            v.store(s);
-          } else {
-            RowVelocities<S, A, kDense> v(w_, s);
-            solve_resistance(s, r, v);
-            v.store(w_, s);
-          }
+          TreeVelocities<S, A, kDense> v(response, w_, s);
+          solve_resistance(s, r, v);
+          v.store(s);
         });
   }
   // visit(body, lanes) for the bodies that move at both ends of a block, or of all blocks.

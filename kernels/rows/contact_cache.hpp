@@ -44,7 +44,7 @@ class CacheWriter {
     } else {
       write(s, rows, o);
       if (!resistance) return;
-      const Vec3 moment = moment_of(s, *resistance, amount);
+      const Vec3 moment = moment_of(load_as<Vec3>(s.normal[0]), *resistance, amount);
       store_rows4(rows + kMomentRow<S, N>, o, moment.x, moment.y, moment.z, Real(0));
     }
   }

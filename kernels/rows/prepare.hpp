@@ -167,8 +167,11 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
     put_friction(t, g, sides, code, m, active, sums.anchors, sums.count, stored, s);
   }
   if (t.has_resistance) {
-    auto& resistance = resistance_at<S>(blocks, blocks.count - 1);
-    put_resistance(t, g, sides, code, m, s, rows, at, stored, resistance);
+    Float kept[4];
+    load_rows4(rows + kMomentRow<S, N>, at, kept[0], kept[1], kept[2], kept[3]);
+    put_resistance<S, A>(t, g, sides, code, mask, load_as<typename S::Vec>(s.normal[0]), m.tangent,
+                         kept, kept[kPlanarMoment<N>], Float(Real(0)) < sum_of<N>(stored.normal),
+                         resistance_at<S>(blocks, blocks.count - 1));
   }
   if (t.has_restitution) {
     auto& bounce = bounce_at<S, N>(blocks, blocks.count - 1);

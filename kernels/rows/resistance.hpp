@@ -82,37 +82,40 @@ MW_INLINE Float turn(Vec3 p, const Inertia& inertia, Vec3 q) {
   return dot(p, apply(inertia, q));
 }
 
-// Where the moments of a manifold lie in its row of the cache (contact_cache.hpp).
+// Where the moments of a manifold lie in its row of the cache (contact_cache.hpp): four numbers, in
+// the plane one of them.
 template <class S, int N>
 inline constexpr int kMomentRow = S::kDim == 2 ? (N == 1 ? 0 : 4) : (N == 1 ? 4 : 16);
+template <int N>
+inline constexpr int kPlanarMoment = N == 1 ? 3 : 2;
 
 // A moment is kept as a world vector, since its axes rotate with it.
-template <class S, int N>
-MW_INLINE void carry_moment(const Real* rows, const std::int32_t* at, Mask carried,
-                            typename S::Vec normal, Resistance<S>& r) {
-  Float x[4];
-  load_rows4(rows + kMomentRow<S, N>, at, x[0], x[1], x[2], x[3]);
+template <class S>
+MW_INLINE void carry_moment(const Float* x, Float planar, Mask carried, typename S::Vec normal,
+                            Resistance<S>& r) {
   const auto put = [&](int i, Float amount) {
     select(carried, amount, Float(Real(0))).store(r.impulse[i]);
   };
   if constexpr (S::kDim == 2) {
-    put(0, x[N == 1 ? 3 : 2]);
+    put(0, planar);
   } else {
     const Vec3 kept{x[0], x[1], x[2]}, first = load_as<Vec3>(r.tangent[0]);
     put(0, dot(kept, first)), put(1, dot(kept, cross(normal, first))), put(2, dot(kept, normal));
   }
 }
 
-template <class S, int N, class A>
-MW_INLINE void put_resistance(const Constants& t, const Group& g, const Sides<S, A>& sides,
-                              const std::int32_t* code, const Manifold<GeometryOf<S>, N>& m,
-                              const SidedBlock<S, N, A>& s, const Real* rows,
-                              const std::int32_t* at, const StoredImpulses<N>& stored,
-                              Resistance<S>& r) {
+// Not inlined, like what follows in the passes: few scenes have resistance, and kernels are many.
+// `kept`: numbers of the cache, in the lanes of `carried`; `planar` the one of the plane.
+template <class S, class A>
+__attribute__((noinline)) void put_resistance(const Constants& t, const Group& g,
+                                              const Sides<S, A>& sides, const std::int32_t* code,
+                                              std::uint32_t mask, typename S::Vec normal,
+                                              typename S::Vec tangent, const Float* kept,
+                                              Float planar, Mask carried, Resistance<S>& r) {
   const Float zero(Real(0));
-  const Mask active = mask_from_bits(s.mask);
+  const Mask active = mask_from_bits(mask);
   const auto larger = [&](LaneNumber Material::*number) {
-    const MaterialPair of = load_materials<A>(t, g, code, s.mask, number);
+    const MaterialPair of = load_materials<A>(t, g, code, mask, number);
     return select(active, max(of.a, of.b), zero);
   };
   const Float rolling = larger(&Material::rolling_resistance);
@@ -122,60 +125,80 @@ MW_INLINE void put_resistance(const Constants& t, const Group& g, const Sides<S,
     const Float torsional = larger(&Material::torsional_resistance);
     torsional.store(r.torsional);
     resists = resists | (zero < torsional);
-    store(r.tangent[0], select(active, m.tangent, zero_of<Vec3>()));
+    store(r.tangent[0], select(active, tangent, zero_of<Vec3>()));
   }
   r.lanes = bits(resists);
-  const auto normal = load_as<typename S::Vec>(s.normal[0]);
   const auto turning = [&](typename S::Ang p, typename S::Ang q) {
     Float k = turn(p, sides.b.body.inertia, q);
     if constexpr (A::kMoves) k = k + turn(p, sides.a.body.inertia, q);
     return k;
   };
   put_masses(turning_masses(r, normal, turning), mask_from_bits(kAllLanes), r);
-  const Mask carried = zero < sum_of<N>(stored.normal);
-  carry_moment<S, N>(rows, at, carried & resists, normal, r);
+  carry_moment(kept, planar, carried & resists, normal, r);
 }
 
 // ---- in the passes -----------------------------------------------------------------------------
 
-template <class S, int N, class A, class Velocities>
-MW_INLINE void apply_turn(const SidedBlock<S, N, A>& s, typename S::Ang moment, Velocities& v) {
+// The sides of a block whose bodies may rotate; `a` is any where A does not move.
+template <class S>
+struct TurningSides {
+  const SideRows<S, Free>&a, &b;
+};
+template <class S, int N, class A>
+MW_INLINE TurningSides<S> turning_sides(const SidedBlock<S, N, A>& s) {
+  if constexpr (A::kMoves) {
+    return {s.a, s.b};
+  } else {
+    return {s.b, s.b};
+  }
+}
+template <class S, class Velocities>
+MW_INLINE void apply_turn(const TurningSides<S>& s, typename S::Ang moment, Velocities& v) {
   add_moment(s.b, moment, v.b);
-  if constexpr (A::kMoves) take_moment(s.a, moment, v.a);
+  if constexpr (!std::is_same_v<decltype(v.a), Still>) take_moment(s.a, moment, v.a);
 }
 // The moment of amounts along the axes of the rows.
-template <class S, int N>
-MW_INLINE typename S::Ang moment_of(const ContactBlock<S, N>& s, const Resistance<S>& r,
+template <class S>
+MW_INLINE typename S::Ang moment_of(typename S::Vec n, const Resistance<S>& r,
                                     const Float* amount) {
   if constexpr (S::kDim == 2) {
     return amount[0];
   } else {
-    const Vec3 n = load_as<Vec3>(s.normal[0]), first = load_as<Vec3>(r.tangent[0]);
+    const Vec3 first = load_as<Vec3>(r.tangent[0]);
     return fma(n, amount[2], fma(cross(n, first), amount[1], first * amount[0]));
   }
 }
 
-// `before`: the impulses so far. Changes them and v, with `pressed` N s along the normal.
-template <class S, int N, class A, class Velocities>
-MW_INLINE void resist(const SidedBlock<S, N, A>& s, const Resistance<S>& r, Float pressed,
-                      const Float* before, Velocities& v, Float* after) {
+// `before`: the impulses so far. Changes them and v, with `pressed` N s along the normal n.
+template <class S, class Velocities>
+__attribute__((noinline)) void resist(const TurningSides<S>& s, typename S::Vec n,
+                                      const Resistance<S>& r, Float pressed, const Float* before,
+                                      Velocities& v, Float* after) {
   const Float bound = Float::load(r.rolling) * pressed;
   const auto spin = relative_spin(v.a, v.b);
   if constexpr (S::kDim == 2) {
     after[0] = clamp(fnma(Float::load(r.stop[0]), spin, before[0]), -bound, bound);
     apply_turn(s, after[0] - before[0], v);
   } else {
-    const Vec3 n = load_as<Vec3>(s.normal[0]), first = load_as<Vec3>(r.tangent[0]);
-    const Vec3 second = cross(n, first);
+    const Vec3 first = load_as<Vec3>(r.tangent[0]), second = cross(n, first);
     const Sym2 stop{Float::load(r.stop[0]), Float::load(r.stop[1]), Float::load(r.stop[2])};
-    stop_in_circle<Velocities::kIsDense>(stop, Float::load(r.brake), dot(first, spin),
-                                         dot(second, spin), before, bound, after);
+    stop_in_circle<false>(stop, Float::load(r.brake), dot(first, spin), dot(second, spin), before,
+                          bound, after);
     apply_turn(s, fma(second, after[1] - before[1], first * (after[0] - before[0])), v);
     const Float most = Float::load(r.torsional) * pressed;
     const Float left = dot(n, relative_spin(v.a, v.b));
     after[2] = clamp(fnma(Float::load(r.torsion_mass), left, before[2]), -most, most);
     apply_turn(s, n * (after[2] - before[2]), v);
   }
+}
+// Of rows one for both layouts.
+template <class S, class A, bool kDense>
+MW_INLINE SideVelocities<S, A>& sides_of(RowVelocities<S, A, kDense>& v) {
+  return v;
+}
+template <class Velocities>
+MW_INLINE Velocities& sides_of(Velocities& v) {
+  return v;
 }
 
 // One visit of a pass to the rows of a block.
@@ -185,7 +208,8 @@ MW_INLINE void solve_resistance(const SidedBlock<S, N, A>& s, Resistance<S>& r, 
   Float normal[N], before[S::kAng], after[S::kAng];
   for (int i = 0; i < N; ++i) normal[i] = Float::load(s.impulse[i]);
   for (int i = 0; i < S::kAng; ++i) before[i] = Float::load(r.impulse[i]);
-  resist(s, r, sum_of<N>(normal), before, v, after);
+  resist(turning_sides(s), load_as<typename S::Vec>(s.normal[0]), r, sum_of<N>(normal), before,
+         sides_of(v), after);
   const Mask resists = mask_from_bits(r.lanes);
   keep_other_lanes_of_sides(resists, found, v);
   for (int i = 0; i < S::kAng; ++i) select(resists, after[i], before[i]).store(r.impulse[i]);

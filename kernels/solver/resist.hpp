@@ -15,7 +15,8 @@ struct ResistancePasses {
           RowVelocities<S, A, kDense> v(w, s), before = v;
           Float amount[S::kAng];
           for (int i = 0; i < S::kAng; ++i) amount[i] = Float::load(r.impulse[i]);
-          apply_turn(s, moment_of(s, r, amount), v);
+          const auto normal = load_as<typename S::Vec>(s.normal[0]);
+          apply_turn(turning_sides(s), moment_of(normal, r, amount), v);
           keep_other_lanes_of_sides(mask_from_bits(r.lanes), before, v);
           v.store(w, s);
         });
@@ -46,7 +47,8 @@ struct ResistancePasses {
             more = more + (Float::load(bounce.total[k]) - Float::load(bounce.found[k]));
           }
           for (Float& x : none) x = zero;
-          resist(s, r, max(more, zero), none, v, after);
+          resist(turning_sides(s), load_as<typename S::Vec>(s.normal[0]), r, max(more, zero), none,
+                 sides_of(v), after);
           keep_other_lanes_of_sides(part, before, v);
           v.store(w, s);
           for (auto& x : r.impulse) select(part, zero, Float::load(x)).store(x);
