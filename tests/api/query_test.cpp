@@ -52,6 +52,31 @@ double rounding() { return has_table({Isa::scalar, Precision::f64}) ? 1e-12 : 2e
 
 }  // namespace
 
+// The way between the nearest points is then nothing but rounding.
+TEST_CASE("hulls that touch exactly have the normal of the face", "[fast][query]") {
+  Random random(11);
+  for (int round = 0; round < 300; ++round) {
+    const Quat turn = random.rotation();
+    const Vec3 normal = turn * Vec3::UnitZ(), at = random.in_cube(2);
+    Shape shapes[2];
+    Place places[2];
+    for (const int i : {0, 1}) {
+      const double half = random.uniform(0.1, 1), wide = random.uniform(0.2, 1);
+      Hull hull;
+      for (int k = 0; k < 12; ++k) {
+        const double angle = 2 * kPi * (k / 2 + 0.3 * i) / 6;
+        hull.vertices.push_back(
+            {wide * std::cos(angle), wide * std::sin(angle), k % 2 == 0 ? -half : half});
+      }
+      shapes[i].geometry = hull;
+      places[i] = {at + (i == 0 ? -half : half) * normal, turn};
+    }
+    const Separation s = distance(shapes[0], places[0], shapes[1], places[1], Space::spatial);
+    CHECK(std::abs(s.distance) < 1e-6);
+    CHECK((s.normal - normal).norm() < 1e-5);
+  }
+}
+
 TEST_CASE("distances prove themselves", "[fast][query]") {
   Random random(3);
   for (Space space : {Space::planar, Space::spatial}) {
