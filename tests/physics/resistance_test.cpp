@@ -121,6 +121,29 @@ TEST_CASE("wheels on joints resist rolling", "[fast][closed_form][resistance]") 
   }
 }
 
+// Without friction nothing else turns the ball: its spin loses c m (1 + e) v / I.
+TEST_CASE("impacts resist rolling by all that they press", "[fast][closed_form][resistance]") {
+  for (const Space space : kSpaces) {
+    for (const double e : {0.0, 0.5, 1.0}) {
+      Scene scene = empty_scene(space, 0);
+      scene.add(ground(space, 0, e));
+      Body ball = body_of(shape_of(round_of(space, 0.5), 0, e), 0.6 * up_of(space));
+      ball.shapes[0].material.rolling_resistance = 0.05;
+      ball.linear_velocity = -4 * up_of(space);
+      ball.angular_velocity = up_of(space).cross(Vec3(10, 0, 0));
+      scene.add(ball);
+      const double lost = 0.05 * (1 + e) * 4 / (lag_of(space) * 0.25);
+      for (const Table& table : widest_tables()) {
+        Batch batch(compile(scene), options_of(table));
+        batch.step(10);
+        INFO(name(table) << ", e " << e);
+        CHECK(velocity(batch, 0, 0).dot(up_of(space)) == approx(4 * e, 1e-3));
+        CHECK(spin(batch, 0, 0).norm() == Approx(10 - lost).epsilon(1e-3));
+      }
+    }
+  }
+}
+
 // Without friction nothing else turns balls that meet head on.
 TEST_CASE("resistance keeps momentum", "[fast][resistance]") {
   for (const Space space : kSpaces) {
