@@ -106,13 +106,11 @@ struct SoftContact {
   bool operator==(const SoftContact&) const = default;
 };
 
-// Of rolling_resistance and torsional_resistance a pair uses the larger value. With the normal
-// force N of a contact, the moment against rolling is at most rolling_resistance N, that against
-// spinning about the normal torsional_resistance N. They are the rolling and torsional friction of
-// MuJoCo
-// (`friction` of a geom, in another order), and rolling_resistance is Box2D's rollingResistance
-// times the radius. A ball of radius R rests on slopes up to atan(rolling_resistance / R). Refused
-// with Solver::newton.
+// A contact with the normal force N resists rolling by moments up to rolling_resistance N, and
+// spinning about the normal up to torsional_resistance N; a pair uses the larger values. They are
+// MuJoCo's rolling and torsional friction. Box2D's rollingResistance is rolling_resistance over the
+// radius. A ball of radius R rests on slopes up to atan(rolling_resistance / R). Solver::newton
+// refuses both.
 struct Material {
   double friction = 0.6;            // Coulomb coefficient; a pair uses the geometric mean
   double restitution = 0.0;         // 0 to 1; a pair uses the larger value

@@ -199,10 +199,10 @@ class SoftContact:
 class Material:
     """Contact properties of a shape.
 
-    With the normal force N of a contact, the moment against rolling is at most rolling_resistance N,
-    that against spinning about the normal torsional_resistance N. They are MuJoCo's rolling and
-    torsional friction, and rolling_resistance is Box2D's rollingResistance times the radius. A ball
-    of radius R rests on slopes up to atan(rolling_resistance / R). The newton solver refuses both.
+    A contact with the normal force N resists rolling by moments up to rolling_resistance N, and
+    spinning about the normal up to torsional_resistance N. They are MuJoCo's rolling and torsional
+    friction. Box2D's rollingResistance is rolling_resistance over the radius. A ball of radius R
+    rests on slopes up to atan(rolling_resistance / R). The newton solver refuses both.
     """
 
     friction: float = 0.6  # Coulomb coefficient; a pair takes the geometric mean
