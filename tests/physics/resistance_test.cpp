@@ -157,22 +157,25 @@ TEST_CASE("resistance keeps momentum", "[fast][resistance]") {
           space == Space::planar ? Vec3(0, 0, 3 + side) : Vec3(2 * side, side, 3);
       scene.add(ball);
     }
-    Batch batch(compile(scene), {.worlds = 1, .precision = Precision::f64});
-    const auto momentum = [&] {
-      Vec3 out = Vec3::Zero();
-      for (int i = 0; i < 2; ++i) {
-        const auto m = mass_properties(scene, scene.bodies[static_cast<std::size_t>(i)]);
-        out += m.mass * position(batch, 0, i).cross(velocity(batch, 0, i));
-        out += m.inertia * spin(batch, 0, i);
-      }
-      return out;
-    };
-    const Vec3 before = momentum();
-    const Vec3 spins = spin(batch, 0, 0) - spin(batch, 0, 1);
-    batch.step(60);
-    CHECK((momentum() - before).norm() < 1e-10 * before.norm());
-    CHECK((velocity(batch, 0, 0) + velocity(batch, 0, 1)).norm() < 1e-12);
-    CHECK((spin(batch, 0, 0) - spin(batch, 0, 1)).norm() < 0.9 * spins.norm());
+    for (const Table& table : widest_tables()) {
+      Batch batch(compile(scene), options_of(table));
+      const auto momentum = [&] {
+        Vec3 out = Vec3::Zero();
+        for (int i = 0; i < 2; ++i) {
+          const auto m = mass_properties(scene, scene.bodies[static_cast<std::size_t>(i)]);
+          out += m.mass * position(batch, 0, i).cross(velocity(batch, 0, i));
+          out += m.inertia * spin(batch, 0, i);
+        }
+        return out;
+      };
+      const Vec3 before = momentum();
+      const Vec3 spins = spin(batch, 0, 0) - spin(batch, 0, 1);
+      batch.step(60);
+      INFO(name(table));
+      CHECK((momentum() - before).norm() < pick(table, 1e-5, 1e-10) * before.norm());
+      CHECK((velocity(batch, 0, 0) + velocity(batch, 0, 1)).norm() < pick(table, 1e-6, 1e-12));
+      CHECK((spin(batch, 0, 0) - spin(batch, 0, 1)).norm() < 0.9 * spins.norm());
+    }
   }
 }
 
