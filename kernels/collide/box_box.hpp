@@ -61,7 +61,19 @@ struct BoxBox {
       m.valid[i] = kept.valid[i];
       m.guard[i] = kept.guard[i];
     }
-    m.code = fma(axis, Real(8), other.code);
+    // Points, and the friction's directions, are told apart by A's face even if B has the reference
+    // face, so that impulses are carried over when it changes.
+    const Mask by_b = from_b & !edge;
+    if (any(by_b)) {
+      const Float one(Real(1));
+      const Vec3 u = other.edge1 * (one / other.half1), v = other.edge2 * (one / other.half2);
+      const Vec3 tangent = fnma(f.n, dot(f.n, u), u);
+      const Float length = sqrt(select(by_b, dot(tangent, tangent), one));
+      m.tangent = select(by_b, tangent * (one / length), m.tangent);
+      put_places(u, v, by_b, m);
+    }
+    m.code =
+        select(from_b, fma(other.axis, Real(8), face_axis), fma(face_axis, Real(8), other.axis));
     m.match_distance2 = match_distance2(min(f.half_u, f.half_v));
     if (any(edge)) put_edge_contact(touch, axis, d, from_b, f, kept, extent2, edge, m);
   }

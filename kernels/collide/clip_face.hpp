@@ -182,10 +182,14 @@ inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const Conve
   const FacePlane flat{Real(0), Real(0), Real(0)};
   put_kept(kept, p.frame, flat, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0), d,
            good, 0, m);
-  m.tangent = select(good, p.frame.u, m.tangent);
   m.normal = select(good, axis.face_normal, m.normal);
-  const Float side = flip ? Real(1) : Real(0);
-  m.code = select(good, fma(fma(axis.face, Real(2), side), Real(128), p.other.code), m.code);
+  // Points, and the friction's directions, are told apart by A's feature even if B has the
+  // reference face, so that impulses are carried over when it changes.
+  const Frame of_a = flip ? frame_of(axis.face_normal, p.other.along, Real(0)) : p.frame;
+  m.tangent = select(good, of_a.u, m.tangent);
+  if (flip) put_places(of_a.u, of_a.v, good, m);
+  const Float first = flip ? p.other.code : p.face.code, second = flip ? p.face.code : p.other.code;
+  m.code = select(good, fma(first, Real(128), second), m.code);
   m.match_distance2 =
       select(good, match_distance2(sqrt(p.extent2) * Float(Real(0.7))), m.match_distance2);
   return good;

@@ -88,7 +88,7 @@ struct LinkEdges {
     const Float nearest = clip_edges(edges, Float(t.margin), m);
     const Mask over = nearest < Float(Real(1e5));
     m.valid[0] = m.valid[0] & over, m.valid[1] = m.valid[1] & over;
-    m.code = select(from_b, ref.index + Float(Real(8)), inc.index);
+    m.code = select(from_b, ref.index, inc.index);
     if constexpr (std::is_same_v<PoseB, CapsulePose<Vec2>> || std::is_same_v<PoseB, RoundedPose>) {
       const NearestCorner near = nearest_corner_to(b, ca, cb, d);
       const Mask corner = (zero < ref.value) & (ref.value - radius + tie < nearest) &

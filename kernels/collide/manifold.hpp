@@ -24,4 +24,13 @@ struct Manifold {
   Float match_distance2;  // m^2: stored impulses are carried to points closer than this
 };
 
+// Places of the points along directions of A. Points that are not there repeat the first.
+MW_INLINE void put_places(Vec3 u, Vec3 v, Mask use, Manifold<Isotropic, 4>& m) {
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 at = select(m.valid[i], m.point_a[i], m.point_a[0]);
+    m.feature_x[i] = select(use, dot(u, at), m.feature_x[i]);
+    m.feature_y[i] = select(use, dot(v, at), m.feature_y[i]);
+  }
+}
+
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -116,7 +116,8 @@ struct RoundEdges {
         select(from_b, opposed_edge(ca, edge_b.normal), opposed_edge(cb, edge_a.normal));
     const Float nearest =
         clip_edges(edge_pair(ref, inc, from_b, d, radius_a, radius_b), Float(t.margin), m);
-    m.code = fma(ref.index, Real(16), inc.index) + select(from_b, Float(Real(8)), zero);
+    m.code =
+        select(from_b, fma(inc.index, Real(16), ref.index), fma(ref.index, Real(16), inc.index));
     // Faces that do not lie above one another are nearest at corners, unless the axes cross.
     const Mask corner = (zero < ref.value) & (ref.value - radii + tie < nearest);
     put_corner(corner, nearest_corner_to(b, ca, cb, d), radius_a, radius_b, d, m);

@@ -35,7 +35,8 @@ struct PolygonPolygon {
     e.flip = from_b;
     e.d = d;
     clip_edges(e, Float(t.margin), m);
-    m.code = fma(ref.index, Real(16), inc.index) + select(from_b, Float(Real(8)), zero);
+    m.code =
+        select(from_b, fma(inc.index, Real(16), ref.index), fma(ref.index, Real(16), inc.index));
   }
 };
 

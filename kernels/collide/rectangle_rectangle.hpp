@@ -46,9 +46,10 @@ struct RectangleRectangle {
     e.flip = from_b;
     e.d = d;
     clip_edges(e, Float(t.margin), m);
-    m.code = select(uses_y, one, zero) + select(zero < side, Float(Real(2)), zero) +
-             select(from_b, Float(Real(4)), zero) + select(inc_y, Float(Real(8)), zero) +
-             select(zero < inc_side, Float(Real(16)), zero);
+    const Float two(Real(2)), four(Real(4));
+    const Float ref_edge = select(uses_y, one, zero) + select(zero < side, two, zero);
+    const Float inc_edge = select(inc_y, one, zero) + select(zero < inc_side, two, zero);
+    m.code = select(from_b, fma(ref_edge, four, inc_edge), fma(inc_edge, four, ref_edge));
   }
 };
 

@@ -54,6 +54,7 @@ MW_INLINE Float clip_edges(const Edges& e, Float margin, Manifold<S, 2>& m) {
   // does, its speed tells (measure_approach).
   const Float limit = max(margin, size) + max(min(separation[0], separation[1]), Real(0));
   m.normal = select(e.flip, -e.normal, e.normal);
+  const Vec2 from_a = select(e.flip, -along, along);
   for (int i = 0; i < 2; ++i) {
     const Float place = fma(dx, at[i], x), gap = separation[i];
     const Vec2 base = fma(along, place, e.middle);
@@ -65,7 +66,9 @@ MW_INLINE Float clip_edges(const Edges& e, Float margin, Manifold<S, 2>& m) {
     m.point_a[i] = select(e.flip, on_inc + e.d, on_ref);
     m.point_b[i] = select(e.flip, on_ref, on_inc - e.d);
     m.separation[i] = separation[i];
-    m.feature_x[i] = place;
+    // The same whichever shape has the reference edge, so that impulses are carried over when it
+    // changes.
+    m.feature_x[i] = dot(from_a, m.point_a[i]);
     m.feature_y[i] = Real(0);
     m.valid[i] = separation[i] < limit;
     if constexpr (!kRound) m.valid[i] = m.valid[i] & (!beside | (separation[i] < Float(Real(0))));
