@@ -44,7 +44,7 @@ struct BoxBox {
     KeptPoints kept;
     const Float extent2 = min(fma(f.half_u, f.half_u, f.half_v * f.half_v),
                               dot(other.edge1, other.edge1) + dot(other.edge2, other.edge2));
-    keep_four(clipped, Float(t.margin), extent2, kept);
+    keep_four(clipped, Float(t.margin), Float(t.margin * kLevel), extent2, kept);
     m.normal = select(from_b, -f.n, f.n);
     m.tangent = f.u;
     for (int i = 0; i < 4; ++i) {

@@ -77,16 +77,21 @@ struct KeptPoints {
 // against those within it.
 inline constexpr Real kKeptBeyond = Real(1), kBeyondCounts = Real(1e-3);
 
+// Points that are as far out, or as deep but for `level`, m, are told apart by their place and
+// order: were it by rounding, what rests would stand on other points in every step, and creep.
+inline constexpr Real kLevel = Real(1.0 / 64);  // of the margin
+inline constexpr Real kClearlyMore = Real(1.001);
+
 // extent2: of the smaller of the two faces, m^2; says what counts as a distance or an area.
 template <class Points>
-MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out) {
-  const Float zero(Real(0)), one(Real(1));
-  // Among equally deep points one far out: a corner rather than the middle of an edge.
-  const Float outward(Real(-1e-5));
+MW_INLINE void keep_four(Points& p, Float margin, Float level, Float extent2, KeptPoints& out) {
+  const Float zero(Real(0)), one(Real(1)), clearly(kClearlyMore), size = sqrt(extent2);
+  // Among equally deep points the farthest along a line: a corner, not the middle of an edge.
+  const Float along_x = -(level / max(size, Real(1e-30))), along_y = along_x * Real(0.37);
   Float x = p.x[0], y = p.y[0], z = p.z[0];
-  Float least_key = fma(abs(x) + abs(y), outward, z);
+  Float least_key = fma(y, along_y, fma(x, along_x, z));
   for (int i = 1; i < p.count(); ++i) {
-    const Float key = fma(abs(p.x[i]) + abs(p.y[i]), outward, p.z[i]);
+    const Float key = fma(p.y[i], along_y, fma(p.x[i], along_x, p.z[i]));
     const Mask deeper = key < least_key;
     least_key = min(key, least_key);
     x = select(deeper, p.x[i], x), y = select(deeper, p.y[i], y), z = select(deeper, p.z[i], z);
@@ -94,7 +99,7 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
   // What is as near as the deepest point, or within the margin, may exert a force. What is not may
   // come down in the same step when the bodies turn about the deepest point.
   const Float limit = margin + max(z, zero);
-  const Float beyond = fma(sqrt(extent2), Float(kKeptBeyond), limit);
+  const Float beyond = fma(size, Float(kKeptBeyond), limit);
   out.x[0] = x, out.y[0] = y, out.z[0] = z;
   out.valid[0] = z < Float(kOutOfReach);
   const Float x0 = x, y0 = y;
@@ -109,8 +114,8 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
     p.x[i] = select(near, p.x[i], x0) - x0;
     p.y[i] = select(near, p.y[i], y0) - y0;
     const Float r2 = fma(p.x[i], p.x[i], p.y[i] * p.y[i]) * counts(p.z[i]);
-    const Mask farther = best < r2;
-    best = max(r2, best);
+    const Mask farther = best * clearly < r2;
+    best = select(farther, r2, best);
     far_x = select(farther, p.x[i], far_x), far_y = select(farther, p.y[i], far_y);
     far_z = select(farther, p.z[i], far_z);
   }
@@ -122,11 +127,11 @@ MW_INLINE void keep_four(Points& p, Float margin, Float extent2, KeptPoints& out
   Float right_x = zero, right_y = zero, right_z = Real(kOutOfReach);
   for (int i = 0; i < p.count(); ++i) {
     const Float area = fms(far_x, p.y[i], far_y * p.x[i]) * counts(p.z[i]);
-    const Mask is_left = most < area, is_right = area < least;
-    most = max(area, most);
+    const Mask is_left = most * clearly < area, is_right = area < least * clearly;
+    most = select(is_left, area, most);
     left_x = select(is_left, p.x[i], left_x), left_y = select(is_left, p.y[i], left_y);
     left_z = select(is_left, p.z[i], left_z);
-    least = min(area, least);
+    least = select(is_right, area, least);
     right_x = select(is_right, p.x[i], right_x), right_y = select(is_right, p.y[i], right_y);
     right_z = select(is_right, p.z[i], right_z);
   }

@@ -173,7 +173,7 @@ inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const Conve
   add_deepest(p.outline, true, p.frame.local(flip ? axis.on_a - d : axis.on_b), axis.touch,
               Float(t.face_bias) * Float(kClearly), clipped);
   KeptPoints kept;
-  keep_four(clipped, Float(t.margin), p.extent2, kept);
+  keep_four(clipped, Float(t.margin), Float(t.margin * kLevel), p.extent2, kept);
   // Where all of it is much shallower than the search says, the shapes touch beside the face. A
   // tile is touched nowhere else than over its triangle.
   const Float reached = max(axis.separation, axis.face_separation);
@@ -228,7 +228,7 @@ inline void clip_guards(const Constants& t, const ConvexShape& ref, const Convex
   use = use & (abs(off) < size * Float(kOffFace));
   clipped.add(found.x, found.y, axis.separation);
   KeptPoints kept;
-  keep_four(clipped, Float(t.margin), p.extent2, kept);
+  keep_four(clipped, Float(t.margin), Float(t.margin * kLevel), p.extent2, kept);
   const Mask good = use & kept.valid[0];
   put_kept(kept, p.frame, plane, inc.radius, flip ? mask_from_bits(kAllLanes) : mask_from_bits(0),
            d, good, 1, m);

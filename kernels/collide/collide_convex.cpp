@@ -173,7 +173,7 @@ void collide_plane_convex(const Constants& t, const PlanePose& a, const ConvexSh
   add_deepest(outline, false, frame.local(support(b, -a.normal)), mask_from_bits(kAllLanes),
               Float(t.face_bias) * Float(kClearly), points);
   KeptPoints kept;
-  keep_four(points, Float(Real(1e4)), outline.extent2, kept);
+  keep_four(points, Float(Real(1e4)), Float(t.margin * kLevel), outline.extent2, kept);
   m.normal = a.normal;
   m.tangent = a.tangent;
   for (int i = 0; i < 4; ++i) {
