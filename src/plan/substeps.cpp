@@ -36,7 +36,7 @@ Need need_of_sizes(const Scene& scene, double length_unit) {
 }
 
 Need need_of_standing(const Scene& scene) {
-  const ColumnNeed need = need_of_columns(scene);
+  const StandingNeed need = need_of_standing_bodies(scene);
   if (need.bodies == 0) return {};
   return {substeps_of(need.w, scene.options.dt),
           std::to_string(need.bodies) + " bodies up to " + body_text(scene, need.top) +

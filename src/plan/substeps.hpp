@@ -45,15 +45,15 @@ bool filters_let_touch(const Body& a, const Body& b);
 // numbers. `length_unit` in m.
 SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_unit);
 
-// w that the columns standing in a scene want, rad/s, and the body on top of the one that wants
-// most (columns.cpp).
-struct ColumnNeed {
+// w that what stands in a scene needs, rad/s, and a body of the group that needs most
+// (static_estimate.cpp).
+struct StandingNeed {
   double w = 0;
   int bodies = 0;
   BodyId top = {};
   bool leans = false;  // and not sags
 };
-ColumnNeed need_of_columns(const Scene& scene);
+StandingNeed need_of_standing_bodies(const Scene& scene);
 
 // kg, that each joint carries: of one that parts bodies which hang together the lighter side, of
 // one between them and the world all of it. 0 where a load has other ways (carried_mass.cpp).

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include "manyworlds/scenes.hpp"
 #include "src/plan/substeps.hpp"
@@ -80,6 +81,43 @@ TEST_CASE("columns get the substeps that they stand with", "[fast][plan]") {
     weightless.options.gravity.setZero();
     CHECK(substeps_of(weightless) == 4);
   }
+}
+
+// What no rule by levels sees: an arch's weight goes through faces that are not level.
+TEST_CASE("arches get the substeps that they stand with", "[fast][plan]") {
+  Scene scene = empty_scene(Space::planar, 40);
+  scene.add(ground(Space::planar, 1));
+  constexpr int kCount = 13;
+  const auto on = [](double radius, double angle) {
+    return Vec2(radius * Vec2(std::cos(angle), std::sin(angle)));
+  };
+  for (int i = 0; i < kCount; ++i) {
+    const double from = kPi * i / kCount, to = kPi * (i + 1) / kCount;
+    Polygon block{{on(2, from), on(2.4, from), on(2.4, to), on(2, to)}};
+    const Vec2 middle = on(2.2, (from + to) / 2);
+    for (Vec2& p : block.vertices) p -= middle;
+    scene.add(body_of(shape_of(block, 1), Vec3(middle.x(), middle.y(), 0)));
+  }
+  CHECK(substeps_of(scene) > 4);
+  CHECK(substeps_of(scene) < 16);
+  CHECK(says(why(scene), "13 bodies up to body 7 stand on one another and would sag"));
+  // Half of it falls, whatever the stiffness.
+  scene.bodies.resize(7);
+  CHECK(!says(why(scene), "stand on one another"));
+}
+
+TEST_CASE("columns sag and lean as springs at their corners say", "[fast][plan]") {
+  // Contacts between cubes of the mass m are springs of m w^2 / 2, the one against the ground of
+  // about 4 m w^2 / 2: the top of five sags by 21 g / w^2. It may by a hundredth of two sizes.
+  const Scene five = column(Space::spatial, 5, 0.01);
+  const StandingNeed need = need_of_standing_bodies(five);
+  CHECK(need.bodies == 5);
+  CHECK(!need.leans);
+  CHECK(need.w * need.w == Approx(21 * 10 / (0.01 * 2 * 0.01)).epsilon(0.1));
+  // 40 lean first: at 2 g / (w^2 L) = 1.96 / n^3, measured. A tenth of it comes of the load.
+  const StandingNeed tall = need_of_standing_bodies(column(Space::spatial, 40, 1));
+  CHECK(tall.leans);
+  CHECK(tall.w * tall.w == Approx(2 * 10 * 64000 / (0.3 * 1.96)).epsilon(0.2));
 }
 
 TEST_CASE("ratios of mass and loads of joints ask for substeps", "[fast][plan]") {
