@@ -48,9 +48,6 @@ struct StandingScene {
 };
 StandingScene standing_scene(const Scene& scene);
 
-// Of a group that is looked at; larger ones would take long.
-inline constexpr std::size_t kMostCoordinates = 600;
-
 BodyId highest_of(const Scene& scene, const ContactSprings& group);
 
 }  // namespace manyworlds

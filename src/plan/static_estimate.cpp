@@ -226,6 +226,15 @@ class Estimate {
   Vector load_, displaced_;
 };
 
+// Larger groups would take long. Rows of bodies take a time that grows with their length, others
+// with up to the third power of their number.
+bool is_too_large(const ContactSprings& group) {
+  constexpr std::size_t kMostCoordinates = 600, kMostOfRows = 6000;
+  const std::size_t bodies = group.bodies.size();
+  const bool row = group.contacts.size() <= bodies + bodies / 8;
+  return group.coordinates() > (row ? kMostOfRows : kMostCoordinates);
+}
+
 }  // namespace
 
 StandingNeed need_of_standing_bodies(const Scene& scene) {
@@ -234,7 +243,7 @@ StandingNeed need_of_standing_bodies(const Scene& scene) {
   const StandingScene standing = standing_scene(scene);
   const double unit = 2 * std::numbers::pi * kContactShare / scene.options.dt;  // w of a substep
   for (const ContactSprings& springs : standing.groups) {
-    if (springs.coordinates() > kMostCoordinates) continue;
+    if (is_too_large(springs)) continue;
     Estimate estimate(scene, springs);
     if (!estimate.settle()) continue;
     const int count = static_cast<int>(springs.bodies.size());

@@ -78,8 +78,7 @@ std::optional<HeightField> cells_below(const HeightField& field, const Vec3& low
   return out;
 }
 
-// ---- areas of contact
-// ----------------------------------------------------------------------------
+// ---- areas of contact --------------------------------------------------------------------------
 
 // The points of a feature farthest along n, counter-clockwise about it. One or two: a corner or an
 // edge.
@@ -192,8 +191,7 @@ std::vector<Vec3> points_between(const Part& a, const Part& b, const Separation&
   return spread(std::move(area));
 }
 
-// ---- pairs
-// ---------------------------------------------------------------------------------------
+// ---- pairs -------------------------------------------------------------------------------------
 
 class Finder {
  public:

@@ -66,6 +66,7 @@ TEST_CASE("columns get the substeps that they stand with", "[fast][plan]") {
     CHECK(substeps_of(column(space, 20, 1)) > 4);
     CHECK(says(why(column(space, 20, 1)), "20 bodies up to body 20 stand on one another"));
     CHECK(substeps_of(column(space, 5, 1e-3)) > substeps_of(column(space, 5, 1e-2)));
+    CHECK(substeps_of(column(space, 200, 1)) == 64);
     // What begins above something else with room between is no column.
     CHECK(substeps_of(column(space, 20, 1, 0.3)) == 4);
     // Side by side they are no higher.
