@@ -53,6 +53,26 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
       apply_friction(s, f, twist, v);
     }
   } else {
+    // In the bias pass friction steadies stacks, which stand on manifolds of several points.
+    // Between moving bodies it comes first, so that it does not meet the speeds at which the pass
+    // pushes them apart. On fixed shapes, which the next pass takes that back from at once, and of
+    // links of trees it comes last, so that nothing slips where it is pushed.
+    constexpr bool kSteadies = kPass == Pass::bias && N > 1;
+    constexpr bool kFirst = kSteadies && A::kMoves;
+    const bool steadies = kSteadies && t.has_friction && t.friction_in_bias;
+    if constexpr (kFirst) {
+      if (steadies) {
+        if constexpr (requires { v.b.tree; }) {
+          if ((s.mask & ~lanes_of_tree(v)) != 0) {
+            solve_friction_of_lanes(s, !mask_from_bits(lanes_of_tree(v)), impulse, v);
+          }
+        } else {
+          Float after[2], twist_after(Real(0));
+          solve_friction(s, friction_budget(s, impulse), v, after, twist_after);
+          store_friction(after, twist_after, s);
+        }
+      }
+    }
     Float speed[N];
     normal_speeds(s, v, speed);
     const Float zero(Real(0)), inv_h(t.inv_h);
@@ -172,15 +192,15 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
       }
     }
     if constexpr (kPass == Pass::bias) mark_reached<S, A, kDense>(w, s);
-    // In the bias pass friction steadies stacks, which stand on manifolds of several points.
-    if (t.has_friction && (kPass == Pass::relax || (N > 1 && t.friction_in_bias))) {
+    if ((kPass == Pass::relax && t.has_friction) || (!kFirst && steadies)) {
       Float after[2], twist_after(Real(0));
       apply_normal_with_friction(s, d, friction_budget(s, impulse), v, after, twist_after);
-      after[0].store(s.tangent_impulse[0]);
-      if constexpr (S::kTangents == 2) after[1].store(s.tangent_impulse[1]);
-      if constexpr (ContactBlock<S, N>::kTwist) twist_after.store(s.twist_impulse);
+      store_friction(after, twist_after, s);
     } else {
       apply_normal(s, d, v);
+    }
+    if constexpr (kFirst && requires { v.b.tree; }) {
+      if (steadies) solve_friction_of_lanes(s, mask_from_bits(lanes_of_tree(v)), impulse, v);
     }
   }
 }

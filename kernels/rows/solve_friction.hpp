@@ -98,6 +98,29 @@ MW_INLINE void solve_friction(const SidedBlock<S, N, A>& s, const FrictionBudget
   apply_friction(s, d, twist, v);
 }
 
+template <class S, int N>
+MW_INLINE void store_friction(const Float* tangent, Float twist, ContactBlock<S, N>& s) {
+  tangent[0].store(s.tangent_impulse[0]);
+  if constexpr (S::kTangents == 2) tangent[1].store(s.tangent_impulse[1]);
+  if constexpr (ContactBlock<S, N>::kTwist) twist.store(s.twist_impulse);
+}
+
+// Solves the friction rows in some lanes only.
+template <class S, int N, class A, class Velocities>
+MW_INLINE void solve_friction_of_lanes(SidedBlock<S, N, A>& s, Mask lanes, const Float* impulse,
+                                       Velocities& v) {
+  const FrictionBudget budget = friction_budget(s, impulse);
+  const Velocities before = v;
+  Float after[2], twist_after(Real(0));
+  solve_friction(s, budget, v, after, twist_after);
+  for (int c = 0; c < S::kTangents; ++c) after[c] = select(lanes, after[c], budget.before[c]);
+  if constexpr (ContactBlock<S, N>::kTwist) {
+    twist_after = select(lanes, twist_after, budget.twist_before);
+  }
+  store_friction(after, twist_after, s);
+  keep_other_lanes_of_sides(lanes, before, v);
+}
+
 // Applies normal impulses d[i], then solves the friction rows.
 template <class S, int N, class A, class Velocities>
 MW_INLINE void apply_normal_with_friction(const SidedBlock<S, N, A>& s, const Float* d,

@@ -47,9 +47,7 @@ MW_INLINE void sweep_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) 
   if (t.has_friction) {
     Float after[2], twist_after(Real(0));
     solve_friction<true>(s, friction_budget(s, impulse), v, after, twist_after, relaxation);
-    after[0].store(s.tangent_impulse[0]);
-    if constexpr (S::kTangents == 2) after[1].store(s.tangent_impulse[1]);
-    if constexpr (ContactBlock<S, N>::kTwist) twist_after.store(s.twist_impulse);
+    store_friction(after, twist_after, s);
   }
   v.store(w, s);
 }

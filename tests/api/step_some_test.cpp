@@ -14,7 +14,7 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr int kWorlds = 21, kSteps = 50;
+constexpr int kWorlds = 21, kSteps = 70;
 
 using Kinds = std::vector<Batch::Kind>;
 using Mask = std::vector<std::uint8_t>;
