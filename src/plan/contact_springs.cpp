@@ -97,6 +97,26 @@ StandingScene standing_scene(const Scene& scene) {
   return out;
 }
 
+int depth_of(const ContactSprings& group) {
+  std::vector<std::vector<int>> next(group.bodies.size());
+  std::vector<int> depth(group.bodies.size(), 0), reached;
+  for (const ContactRows& c : group.contacts) {
+    const int a = c.points[0].a, b = c.points[0].b;
+    if (a >= 0) {
+      next[at(a)].push_back(b), next[at(b)].push_back(a);
+    } else if (depth[at(b)] == 0) {
+      depth[at(b)] = 1, reached.push_back(b);
+    }
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const int other : next[at(reached[i])]) {
+      if (depth[at(other)] != 0) continue;
+      depth[at(other)] = depth[at(reached[i])] + 1, reached.push_back(other);
+    }
+  }
+  return reached.empty() ? 0 : depth[at(reached.back())];
+}
+
 BodyId highest_of(const Scene& scene, const ContactSprings& group) {
   const Vec3 down = scene.options.gravity;
   const auto it = std::min_element(group.bodies.begin(), group.bodies.end(),

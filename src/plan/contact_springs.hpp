@@ -48,6 +48,9 @@ struct StandingScene {
 };
 StandingScene standing_scene(const Scene& scene);
 
+// Of the body that is most contacts away from what is fixed or on joints: how many.
+int depth_of(const ContactSprings& group);
+
 BodyId highest_of(const Scene& scene, const ContactSprings& group);
 
 }  // namespace manyworlds

@@ -51,8 +51,14 @@ void resolve_options(PlanData& plan) {
       "substeps", o.substeps, whole(substeps.substeps),
       substeps.why + (as_is ? "" : "; rounded to a multiple of " + std::to_string(n) + " passes"));
   const int stiff = whole(substeps.stiff);
-  choose("contact.frequency", o.contact.frequency, kContactShare * stiff / o.dt,
-         "a quarter of the rate of " + std::to_string(stiff) + " substeps per step, Hz");
+  const double share = contact_share(substeps.depth);
+  const bool full = share == kContactShare;
+  choose("contact.frequency", o.contact.frequency, share * stiff / o.dt,
+         (full ? "a quarter" : short_text(share)) + " of the rate of " + std::to_string(stiff) +
+             " substeps per step, Hz" +
+             (full ? ""
+                   : "; less than a quarter since bodies stand " + std::to_string(substeps.depth) +
+                         " deep"));
 }
 
 }  // namespace manyworlds

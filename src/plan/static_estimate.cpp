@@ -241,7 +241,11 @@ StandingNeed need_of_standing_bodies(const Scene& scene) {
   StandingNeed out;
   if (scene.options.gravity.isZero(0)) return out;
   const StandingScene standing = standing_scene(scene);
-  const double unit = 2 * std::numbers::pi * kContactShare / scene.options.dt;  // w of a substep
+  for (const ContactSprings& springs : standing.groups) {
+    out.depth = std::max(out.depth, depth_of(springs));
+  }
+  const double share = contact_share(out.depth);
+  const double unit = 2 * std::numbers::pi * share / scene.options.dt;  // w of a substep
   for (const ContactSprings& springs : standing.groups) {
     if (is_too_large(springs)) continue;
     Estimate estimate(scene, springs);
@@ -249,7 +253,7 @@ StandingNeed need_of_standing_bodies(const Scene& scene) {
     const int count = static_cast<int>(springs.bodies.size());
     if (count > 1) {
       estimate.deform([&](double w2, int body, bool leans) {
-        if (w2 > out.w * out.w) out = {std::sqrt(w2), count, BodyId(body), leans};
+        if (w2 > out.w * out.w) out = {out.depth, std::sqrt(w2), count, BodyId(body), leans};
       });
     }
     double low = std::max(unit * kLeastSubsteps, out.w), high = unit * kMostSubsteps;
@@ -259,7 +263,7 @@ StandingNeed need_of_standing_bodies(const Scene& scene) {
       const double middle = std::sqrt(low * high);
       (estimate.unstable(middle) > always ? low : high) = middle;
     }
-    out = {high, count, highest_of(scene, springs), true};
+    out = {out.depth, high, count, highest_of(scene, springs), true};
   }
   return out;
 }

@@ -22,7 +22,9 @@ void at_least(Need& need, double substeps, const std::string& why) {
 }
 
 // The number of substeps whose contacts are as stiff as w, rad/s.
-double substeps_of(double w, double dt) { return w * dt / (2 * std::numbers::pi * kContactShare); }
+double substeps_of(double w, double dt, double share = kContactShare) {
+  return w * dt / (2 * std::numbers::pi * share);
+}
 
 // Friction holds, and what rests is still, when a body falls by little of its size in a substep:
 // grips of 6 cm hold from 6 substeps of 1/60 s on.
@@ -35,10 +37,9 @@ Need need_of_sizes(const Scene& scene, double length_unit) {
                                                                 " of their size in a step"};
 }
 
-Need need_of_standing(const Scene& scene) {
-  const StandingNeed need = need_of_standing_bodies(scene);
+Need need_of_standing(const Scene& scene, const StandingNeed& need, int depth) {
   if (need.bodies == 0) return {};
-  return {substeps_of(need.w, scene.options.dt),
+  return {substeps_of(need.w, scene.options.dt, contact_share(depth)),
           std::to_string(need.bodies) + " bodies up to " + body_text(scene, need.top) +
               " stand on one another and would " + (need.leans ? "lean" : "sag")};
 }
@@ -130,6 +131,11 @@ int rounded_up(double substeps) {
 
 }  // namespace
 
+double contact_share(int depth) {
+  constexpr int kStill = 20;  // bodies upon each other that a quarter of the rate holds still
+  return kContactShare * (depth > kStill ? std::sqrt(double{kStill} / depth) : 1);
+}
+
 std::string short_text(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
@@ -170,12 +176,19 @@ SubstepChoice choose_substeps(const std::vector<Scene>& extremes, double length_
     swept = trees_of(extremes.front()).has_joint;
     swept.flip();
   }
-  bool weight = false;
+  std::vector<StandingNeed> standing;
   for (const Scene& scene : extremes) {
+    standing.push_back(need_of_standing_bodies(scene));
+    out.depth = std::max(out.depth, standing.back().depth);
+  }
+  bool weight = false;
+  for (std::size_t i = 0; i < extremes.size(); ++i) {
+    const Scene& scene = extremes[i];
     if (scene.options.gravity.isZero(0)) continue;
     weight = true;
-    for (const Need& of : {need_of_sizes(scene, length_unit), need_of_standing(scene),
-                           need_of_loads(scene, length_unit, swept)}) {
+    for (const Need& of :
+         {need_of_sizes(scene, length_unit), need_of_standing(scene, standing[i], out.depth),
+          need_of_loads(scene, length_unit, swept)}) {
       at_least(need, of.substeps, of.why);
     }
   }

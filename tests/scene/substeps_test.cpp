@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "manyworlds/scenes.hpp"
+#include "scenes/sized.hpp"
 #include "src/plan/substeps.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -82,6 +83,28 @@ TEST_CASE("columns get the substeps that they stand with", "[fast][plan]") {
     weightless.options.gravity.setZero();
     CHECK(substeps_of(weightless) == 4);
   }
+}
+
+TEST_CASE("contacts are softer where bodies stand deep", "[fast][plan]") {
+  const auto hz = [](const Scene& scene) { return *compile(scene).resolved().contact.frequency; };
+  CHECK(hz(scenes::pyramid(20)) == Approx(60));
+  CHECK(hz(scenes::pyramid(80)) == Approx(30));
+  CHECK(says(why(scenes::pyramid(80), "contact.frequency"),
+             "0.125 of the rate of 4 substeps per step, Hz; less than a quarter since bodies stand "
+             "80 deep"));
+  // A wide pile is no deeper, nor is one with room between its bodies.
+  Scene beside = scenes::pyramid(15);
+  for (int i = 0; i < 30; ++i) {
+    beside.add(body_of(shape_of(cube_of(Space::planar, 0.5)), Vec3(40 + 1.1 * i, 0.5, 0)));
+  }
+  CHECK(hz(beside) == Approx(60));
+  CHECK(hz(column(Space::planar, 80, 1, 0.3)) == Approx(60));
+  // Where springs have to be stiff, the substeps are more.
+  const Options deep = compile(column(Space::spatial, 30, 1)).resolved();
+  CHECK(*deep.contact.frequency == Approx(0.25 * std::sqrt(20.0 / 30) * 60 * *deep.substeps));
+  Scene given = scenes::pyramid(80);
+  given.options.contact.frequency = 100;
+  CHECK(hz(given) == 100);
 }
 
 // What no rule by levels sees: an arch's weight goes through faces that are not level.
