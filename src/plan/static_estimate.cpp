@@ -30,6 +30,7 @@ constexpr double kMostLoad = 0.3;    // of that at which it leans
 constexpr double kFixedStiffer = 4;  // against fixed shapes the square of w is so much more
 constexpr double kFriction = 100;    // times the stiffness along the normal
 constexpr double kHeld = 1e-11;      // of its mass w^2 holds what nothing else holds
+constexpr double kNeutral = 1e-3;    // of its weight by its length holds what no load upsets
 constexpr double kMostHeld = 0.01;   // of gravity: more would fall
 constexpr double kAlways = 4;        // times the w of the most substeps: as stiff as can be
 constexpr double kNoChange = 1e-7;   // of the largest displacement
@@ -87,7 +88,7 @@ class Estimate {
 
   // In how many ways it leans at w.
   int unstable(double w) const {
-    const Matrix sum = w * w * stiffness_ + geometric_ / kMostLoad;
+    const Matrix sum = w * w * stiffness_ + geometric_ / kMostLoad + neutral_;
     const Eigen::SimplicialLDLT<Matrix> factors(sum);
     if (factors.info() != Eigen::Success) return 0;
     return static_cast<int>((factors.vectorD().array() < 0).count());
@@ -216,6 +217,16 @@ class Estimate {
     }
     geometric_.resize(n, n);
     geometric_.setFromTriplets(entries.begin(), entries.end());
+    entries.clear();
+    for (std::size_t i = 0; i < springs_.bodies.size(); ++i) {
+      const double weight = springs_.bodies[i]->mass * scene_.options.gravity.norm();
+      for (int k = 0; k < dofs_; ++k) {
+        const Eigen::Index at = first_of(i) + k;
+        entries.emplace_back(at, at, kNeutral * weight / springs_.lengths[i]);
+      }
+    }
+    neutral_.resize(n, n);
+    neutral_.setFromTriplets(entries.begin(), entries.end());
   }
 
   const Scene& scene_;
@@ -223,6 +234,7 @@ class Estimate {
   int dofs_;
   std::vector<bool> pressed_;  // points, in the order of the contacts
   Matrix stiffness_, geometric_;
+  Matrix neutral_;  // keeps rounding from deciding which way a ball leans
   Vector load_, displaced_;
 };
 

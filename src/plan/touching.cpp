@@ -191,6 +191,20 @@ std::vector<Vec3> points_between(const Part& a, const Part& b, const Separation&
   return spread(std::move(area));
 }
 
+// m, the least radius of curvature of a round surface where its normal is n. That of an ellipsoid
+// follows from its support function h(n) = |D n|, whose second derivative is (D^2 - x x^T) / h with
+// x = D^2 n / h.
+double roundness(const Convex& part, const Vec3& n) {
+  if ((part.radii.array() <= 0).any()) return part.radius;
+  const Vec3 squares = part.radii.cwiseAbs2(), local = part.axes.transpose() * n;
+  const double h = part.radii.cwiseProduct(local).norm();
+  const Vec3 x = squares.cwiseProduct(local) / h;
+  const Mat3 all = (Mat3(squares.asDiagonal()) - x * x.transpose()) / h;
+  const Vec3 u = local.unitOrthogonal(), v = local.cross(u);
+  const double uu = u.dot(all * u), uv = u.dot(all * v), vv = v.dot(all * v);
+  return (uu + vv) / 2 - std::hypot((uu - vv) / 2, uv) + part.radius;
+}
+
 // ---- pairs -------------------------------------------------------------------------------------
 
 class Finder {
@@ -314,7 +328,7 @@ class Finder {
     out.a = a.standing, out.b = b.standing, out.normal = s.normal;
     out.fixed = scene_.bodies[at(a.body)].motion != Motion::dynamic;
     out.friction = std::sqrt(a.shape->material.friction * b.shape->material.friction);
-    out.round_a = a.convex.radius, out.round_b = b.convex.radius;
+    out.round_a = roundness(a.convex, s.normal), out.round_b = roundness(b.convex, -s.normal);
     for (const Vec3& p : points_between(a, b, s, kFlat * thickness, scene_.space)) {
       const double inverse = inverse_mass(a, p, s.normal) + inverse_mass(b, p, s.normal);
       if (inverse > 0) out.points.push_back({p, 1 / inverse});
