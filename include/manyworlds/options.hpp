@@ -46,7 +46,7 @@ int iterations_of(const SolverOptions& solver);
 struct ContactOptions {
   // Hz, natural frequency of the soft contacts of tgs_soft and penalty. Default: a quarter of the
   // rate of the substeps that the plan would choose for bodies of similar mass; less if bodies
-  // stand more than 20 deep.
+  // stand more than 15 deep.
   std::optional<double> frequency = {};
   // Hz, contacts with fixed shapes; default: twice frequency.
   std::optional<double> fixed_frequency = {};

@@ -132,7 +132,7 @@ int rounded_up(double substeps) {
 }  // namespace
 
 double contact_share(int depth) {
-  constexpr int kStill = 20;  // bodies upon each other that a quarter of the rate holds still
+  constexpr int kStill = 15;  // deep, that a quarter of the rate holds still
   return kContactShare * (depth > kStill ? std::sqrt(double{kStill} / depth) : 1);
 }
 
