@@ -139,6 +139,15 @@ MW_INLINE void keep_four(Points& p, Float margin, Float level, Float extent2, Ke
   out.valid[2] = left_z < beyond;
   out.x[3] = right_x + x0, out.y[3] = right_y + y0, out.z[3] = right_z;
   out.valid[3] = right_z < beyond;
+  // Rows are solved in this order: the deepest comes first.
+  for (int i = 1; i < 4; ++i) {
+    const Mask deeper = out.valid[i] & (out.z[i] < out.z[0]);
+    const auto swap = [&](Float * of) __attribute__((always_inline)) {
+      const Float first = of[0];
+      of[0] = select(deeper, of[i], first), of[i] = select(deeper, first, of[i]);
+    };
+    swap(out.x), swap(out.y), swap(out.z);
+  }
   for (int i = 0; i < 4; ++i) out.guard[i] = out.valid[i] & (limit <= out.z[i]);
 }
 
