@@ -7,6 +7,7 @@
 #include "manyworlds/scenes.hpp"
 #include "scenes/sized.hpp"
 #include "src/plan/substeps.hpp"
+#include "tests/support/arch.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace manyworlds::test {
@@ -152,19 +153,7 @@ TEST_CASE("what lies on the ground needs no more substeps", "[fast][plan]") {
 
 // What no rule by levels sees: an arch's weight goes through faces that are not level.
 TEST_CASE("arches get the substeps that they stand with", "[fast][plan]") {
-  Scene scene = empty_scene(Space::planar, 40);
-  scene.add(ground(Space::planar, 1));
-  constexpr int kCount = 13;
-  const auto on = [](double radius, double angle) {
-    return Vec2(radius * Vec2(std::cos(angle), std::sin(angle)));
-  };
-  for (int i = 0; i < kCount; ++i) {
-    const double from = kPi * i / kCount, to = kPi * (i + 1) / kCount;
-    Polygon block{{on(2, from), on(2.4, from), on(2.4, to), on(2, to)}};
-    const Vec2 middle = on(2.2, (from + to) / 2);
-    for (Vec2& p : block.vertices) p -= middle;
-    scene.add(body_of(shape_of(block, 1), Vec3(middle.x(), middle.y(), 0)));
-  }
+  Scene scene = arch(Space::planar, 13, 0.3);
   CHECK(substeps_of(scene) > 4);
   CHECK(substeps_of(scene) < 16);
   CHECK(says(why(scene), "13 bodies up to body 7 stand on one another and would sag"));
