@@ -166,7 +166,7 @@ test('balls turn only where their rotation is simulated, and the page says where
   for (const [page, turning] of [[made(), false], [made('--keep', 'orientation'), true]]) {
     assert.equal(page.head.runs[0].kinds[0].turns, turning);
     const view = await open(page.file);
-    assert.equal(await view.page.isVisible('#unturned'), !turning);
+    await view.page.locator('#unturned').waitFor({ state: turning ? 'hidden' : 'visible' });
     if (!turning) assert.match(await view.page.locator('#unturned').textContent(), /rotation .* is not simulated or drawn.*--keep orientation/);
     // The mark that shows how it turns, from the middle to the right.
     const { pixel, color } = await view.body(0, 0);
