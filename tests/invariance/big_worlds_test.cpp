@@ -83,8 +83,11 @@ TEST_CASE("a plan of 5,050 bodies is made without tables and says so shortly", "
 }
 
 TEST_CASE("pyramids stand still as the plan takes them", "[slow][big]") {
-  for (const int base : {12, 21, 30, 60})
-    check_pyramid(scenes::pyramid(base), base, true, 0.006 * base);
+  for (const int base : {12, 21, 30, 45, 60}) {
+    // As loads add up from row to row; contacts are the softer the deeper piles over 15 rows are.
+    const double most_sag = 1.6e-6 * base * base * std::max(base, 15);
+    check_pyramid(scenes::pyramid(base), base, true, most_sag);
+  }
 }
 
 TEST_CASE("a pyramid of 465 boxes stands for 20 s", "[slow][big]") {
