@@ -20,7 +20,7 @@ namespace manyworlds {
 namespace {
 
 constexpr double kNearby = 0.125;  // of the lesser thickness: bodies no farther apart touch
-constexpr double kFlat = 0.02;     // of the thickness: no farther back: on the same face
+constexpr double kFlat = 0.02;     // of the thickness: faces have points no farther back
 constexpr std::size_t kMostPoints = 4;
 constexpr int kDiscPoints = 8;
 
