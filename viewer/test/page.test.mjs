@@ -166,7 +166,7 @@ test('balls turn only where their rotation is simulated, and the page says where
   for (const [page, turning] of [[made(), false], [made('--keep', 'orientation'), true]]) {
     assert.equal(page.head.runs[0].kinds[0].turns, turning);
     const view = await open(page.file);
-    await view.page.locator('#unturned').waitFor({ state: turning ? 'hidden' : 'visible' });
+    if (!turning) await view.page.waitForSelector('#unturned', { state: 'visible' });
     if (!turning) assert.match(await view.page.locator('#unturned').textContent(), /rotation .* is not simulated or drawn.*--keep orientation/);
     // The mark that shows how it turns, from the middle to the right.
     const { pixel, color } = await view.body(0, 0);
@@ -174,6 +174,7 @@ test('balls turn only where their rotation is simulated, and the page says where
     for (const dy of [-2, -1, 0, 1, 2]) strip.push(await view.pixel({ x: pixel.x + 8, y: pixel.y + dy }));
     const marked = strip.some((seen) => String(seen) !== String(color));
     assert.equal(marked, turning, `${strip}`);
+    assert.equal(await view.page.isVisible('#unturned'), !turning);  // now that frames are drawn
     await view.close();
   }
   const film = await browserOf().newPage();
