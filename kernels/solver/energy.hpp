@@ -127,6 +127,10 @@ MW_INLINE void join_bodies(const Constants& t, const Work& w, const ContactBlock
   if (!((s.mask >> lane) & 1u)) return;
   bool active = false;  // before or after restitution
   for (int i = 0; i < N; ++i) active |= bounce.total[i][lane] > 0 || bounce.found[i][lane] > 0;
+  // Friction may have been left where the last round has taken the normal impulse back.
+  for (int c = 0; t.has_friction && c < S::kTangents; ++c) {
+    active |= bounce.total_tangent[c][lane] != 0 || bounce.found_tangent[c][lane] != 0;
+  }
   const int a = body_a_of(w, s, lane), b = body_b_of(w, s, lane);
   if (!active || t.body[a].kinematic || t.body[b].kinematic) return;
   unite(w.parent, a, b);
