@@ -4,6 +4,7 @@
 
 #include "kernels/lane/planar_inertia.hpp"
 #include "kernels/lane/spatial.hpp"
+#include "kernels/rows/block_impulses.hpp"
 #include "kernels/rows/resistance.hpp"
 #include "kernels/work/solver_tables.hpp"
 #include "kernels/work/stages.hpp"
@@ -46,6 +47,15 @@ std::size_t resistance_bytes(const Constants& t) {
     case kernels::InertiaKind::isotropic: return sizeof(Resistance<Isotropic>);
     default: return sizeof(Resistance<Tensor>);
   }
+}
+// They are the same with a tensor of inertia.
+std::size_t impulses_bytes(const Constants& t, int list) {
+  const bool one = list == static_cast<int>(ListId::pair_single) ||
+                   list == static_cast<int>(ListId::fixed_single);
+  if (t.inertia_kind == kernels::InertiaKind::planar) {
+    return one ? sizeof(BlockImpulses<Planar, 1>) : sizeof(BlockImpulses<Planar, Planar::kMulti>);
+  }
+  return one ? sizeof(BlockImpulses<Tensor, 1>) : sizeof(BlockImpulses<Tensor, Tensor::kMulti>);
 }
 
 // Blocks of a list: classes follow one another, and each has no more candidates in a lane than
@@ -242,7 +252,13 @@ void carve(const Constants& t, Work& w, Carver& c) {
   c.take(w.impulse_part, velocities);
   c.take(w.displacement, velocities);
   c.take(w.touched, count(t.bodies + 1));
-  if (t.has_contacts) c.take(w.met, count((t.bodies + 1) * lanes));
+  if (t.has_contacts) {
+    c.take(w.met, count((t.bodies + 1) * lanes));
+    if (t.impact_sweeps > 0) {
+      c.take(w.velocity_before, velocities);
+      c.take(w.stirred, count(t.bodies * 2));
+    }
+  }
   if (t.has_joints) {
     const std::size_t bytes =
         t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});
@@ -308,6 +324,10 @@ void carve(const Constants& t, Work& w, Carver& c) {
     if (t.has_restitution) c.take(list.bounces, count(list.max_blocks) * list.bounce_stride);
     list.resistances = nullptr;
     if (t.has_resistance) c.take(list.resistances, count(list.max_blocks) * resistance_bytes(t));
+    list.impulses_before = nullptr;
+    if (t.impact_sweeps > 0) {
+      c.take(list.impulses_before, count(list.max_blocks) * impulses_bytes(t, l));
+    }
   }
 }
 

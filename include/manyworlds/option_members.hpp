@@ -36,7 +36,7 @@ struct Members<ContactOptions> {
   static void visit(auto& value, auto&& visit) {
     auto& [frequency, fixed_frequency, damping_ratio, push_out_speed, slop, restitution_threshold,
            restitution_sweeps, friction_in_bias_pass, cast_against_fixed, cast_between_moving,
-           collision_passes] = value;
+           collision_passes, impact_sweeps] = value;
     visit("frequency", frequency), visit("damping_ratio", damping_ratio);
     visit("fixed_frequency", fixed_frequency,
           counted_if(fixed_frequency.has_value(), "the default"));
@@ -48,6 +48,9 @@ struct Members<ContactOptions> {
     visit("cast_between_moving", cast_between_moving);
     visit("collision_passes", collision_passes,
           counted_if(collision_passes.value_or(1) != 1, "contacts are found once a step"));
+    visit(
+        "impact_sweeps", impact_sweeps,
+        counted_if(impact_sweeps.value_or(0) != 0, "impacts end with the sweeps of all contacts"));
   }
 };
 template <>

@@ -165,7 +165,7 @@ struct SceneConstants {
   std::int32_t attractors;
   std::int32_t passes;    // over the collision stages in a step
   std::int32_t substeps;  // of a pass
-  std::int32_t restitution_sweeps;
+  std::int32_t restitution_sweeps, impact_sweeps;
   bool has_orientation, has_friction, has_restitution, has_contacts, has_drag, has_gravity;
   bool has_joints;
   bool has_resistance;    // of contacts against rolling and spinning
@@ -236,7 +236,10 @@ struct SceneConstants {
   Real push_out_rate;  // 1/s, of an overlap with a fixed shape: between that speed and twice it
   Real fixed_leak;     // m/s, at most given up of what presses on a fixed shape (rows/contact.hpp)
   Real blow_speed;     // m/s, faster approaches are solved manifold by manifold
-  Real margin;         // 4 slop, m
+  // Of impacts (solver/strikes.hpp): m/s, of the slowest, but for gravity; of impulses, changes
+  // that need no answer in the first round; and its growth from round to round.
+  Real strike_speed, strike_tolerance, strike_growth;
+  Real margin;  // 4 slop, m
   Real half_margin;
   Real restitution_threshold, restitution_time;  // m/s, and for how long gravity adds to it, s
   Real sleep_speed, sleep_time;                  // a body is at rest below; an island sleeps after

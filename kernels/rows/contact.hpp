@@ -26,6 +26,8 @@ inline constexpr Real kUnlimited = Real(1e30);       // N s
 inline constexpr Real kTouching = Real(1.0 / 1024);  // of the margin: a gap that counts as none
 inline constexpr Real kPushUnderLoad = Real(0.125);  // of c
 
+inline constexpr Real kSlowBlow = Real(1.0 / 1024);  // of the least impact, in one
+
 enum class Pass { warm_start, bias, relax };
 
 // Adds to `gaps` how far each point has moved apart since the step began. From displacements:
@@ -36,6 +38,48 @@ MW_INLINE void moved_apart(const Work& w, const SidedBlock<S, N, A>& s, Float* g
   const Float along =
       dot(load_as<typename S::Vec>(s.normal[0]), relative_velocity(moved.a, moved.b));
   for (int i = 0; i < N; ++i) gaps[i] = normal_speed(s, i, moved, gaps[i] + along);
+}
+
+// The same in the lanes of an impact, from the separations at the start of the step.
+template <bool kDense, class S, int N, class A>
+__attribute__((noinline)) void find_gaps_of_struck(const Work& w, const SidedBlock<S, N, A>& s,
+                                                   Float* gaps) {
+  const Mask struck = mask_from_bits(s.struck);
+  Float moved[N];
+  for (int i = 0; i < N; ++i) moved[i] = Float::load(s.separation[i]);
+  moved_apart<kDense>(w, s, moved);
+  for (int i = 0; i < N; ++i) gaps[i] = select(struck, moved[i], gaps[i]);
+}
+
+// In the lanes that an impact may have reached in this step: does the block take a share of one?
+// `d`: what its impulses change by; what it has not closed of a gap with `bias` follows in relax.
+// Trees of joints share impacts out by themselves.
+template <class S, int N>
+struct Strike {
+  Float impulse[N], d[N], bias[N];
+};
+template <class S, int N>
+__attribute__((noinline)) std::uint32_t find_struck(const Work& w, const ContactBlock<S, N>& s,
+                                                    const Strike<S, N>& of) {
+  const Float zero(Real(0)), least = Float::load(w.strike_speed);
+  Float beyond = zero;
+  for (int i = 0; i < N; ++i) {
+    const Float mass = Float::load(s.mass[i]);
+    const Float ahead = select(zero < of.impulse[i], max(of.bias[i], zero), zero);
+    beyond = max(fma(mass, ahead - least, abs(of.d[i])), beyond);
+  }
+  return s.strikes & bits(zero < beyond);
+}
+template <class S, int N, class A, class Velocities>
+MW_INLINE void mark_struck(Work& w, SidedBlock<S, N, A>& s, const Float* impulse, const Float* d,
+                           const Float* bias, const Velocities& v) {
+  s.struck &= w.struck_before;
+  if constexpr (requires { v.b.tree; }) return;
+  if (s.strikes == 0) return;
+  Strike<S, N> of;
+  for (int i = 0; i < N; ++i) of.impulse[i] = impulse[i], of.d[i] = d[i], of.bias[i] = bias[i];
+  s.struck |= find_struck(w, s, of);
+  w.struck |= s.struck;
 }
 
 // `v`: the velocities of its sides, as they are loaded and as impulses change them.
@@ -102,13 +146,29 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         keep[i] = select(zero < apart_by[i], zero, soft.impulse_scale);
         push_out[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
+      // An impact is hard: light bodies under heavy ones would give way. Each sweep pushes out what
+      // overlaps once more, so slowly.
+      if (w.settles) {
+        for (int i = 0; i < N; ++i) {
+          bias[i] = max(bias[i], push_out[i] * -kPushUnderLoad), keep[i] = zero;
+        }
+      }
     } else {
       // The substep has moved the bodies; now remove the speed that the push-out has added. A point
       // that is still apart gets no more impulse: whether it will touch is the next substep's, or
       // the next step's, business.
       const Float h(t.h), touch(t.margin * kTouching);
+      Float gaps[N];
+      for (int i = 0; i < N; ++i) gaps[i] = fma(h, speed[i], Float::load(s.gap[i]));
+      // In an impact the bodies have got other speeds by now than those that moved them.
+      if (s.struck != 0) {
+        Float copy[N];  // so that these can stay in registers
+        for (int i = 0; i < N; ++i) copy[i] = gaps[i];
+        find_gaps_of_struck<kDense>(w, s, copy);
+        for (int i = 0; i < N; ++i) gaps[i] = copy[i];
+      }
       for (int i = 0; i < N; ++i) {
-        const Float gap = fma(h, speed[i], Float::load(s.gap[i]));
+        const Float gap = gaps[i];
         bias[i] = max(gap, zero) * inv_h;
         most[i] = select(touch < gap, impulse[i], kUnlimited);
       }
@@ -122,7 +182,11 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         comes = max(select(impulse[i] < most[i], -closing, zero), comes);
         goes = max(select(zero < impulse[i], closing, zero), goes);
       }
-      Mask blow = Float(t.blow_speed) < max(comes, goes);
+      Float least(t.blow_speed);
+      if (const std::uint32_t struck = kPass == Pass::relax || w.settles ? s.struck : 0) {
+        least = select(mask_from_bits(struck), Float::load(w.strike_speed) * kSlowBlow, least);
+      }
+      Mask blow = least < max(comes, goes);
       // Of links of trees, of which a joint takes a share, only loads that come at once are solved
       // so.
       if constexpr (requires { v.b.tree; }) {
@@ -191,7 +255,10 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         couple_following(s, i, d[i], speed);
       }
     }
-    if constexpr (kPass == Pass::bias) mark_reached<S, A, kDense>(w, s);
+    if constexpr (kPass == Pass::bias) {
+      mark_reached<S, A, kDense>(w, s);
+      mark_struck(w, s, impulse, d, bias, v);
+    }
     if ((kPass == Pass::relax && t.has_friction) || (!kFirst && steadies)) {
       Float after[2], twist_after(Real(0));
       apply_normal_with_friction(s, d, friction_budget(s, impulse), v, after, twist_after);
@@ -210,8 +277,9 @@ MW_INLINE RowVelocities<S, A, kDense> velocities_of(const Work& w, const SidedBl
   return {w, s};
 }
 
+// Not inlined: impacts ask for single blocks again (solver/strikes.hpp).
 template <bool kDense, Pass kPass, class S, int N, class A>
-MW_INLINE void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
+__attribute__((noinline)) void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
   auto v = velocities_of<kDense>(w, s);
   solve_rows<kDense, kPass>(t, w, s, v);
   v.store(w, s);

@@ -34,8 +34,10 @@ struct PairRows<2> {
 
 struct alignas(64) BlockHeader : RowBodies {
   std::int32_t key[kLanes];
-  std::uint32_t unsure;  // lanes in which nothing is expected to touch in this step
-  bool apart;            // about other bodies than the block before it (apart.hpp)
+  std::uint32_t unsure;   // lanes in which nothing is expected to touch in this step
+  std::uint32_t strikes;  // lanes in which an impact may be, or has reached it, in this step
+  std::uint32_t struck;   // those in which it has had impulses in this substep
+  bool apart;             // about other bodies than the block before it (apart.hpp)
 };
 
 // All but side A.

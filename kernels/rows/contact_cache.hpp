@@ -5,6 +5,7 @@
 //   spatial, four       x0..x3 | y0..y3 | l0..l3 | code f1 f2 twist
 // and in space, of plans with resistance, mx my mz 0, which four points round up to 8 numbers.
 // l: along the normal; f, m: friction and the moment of resistance, as world vectors of one point.
+// Normal impulses of an impact in the last substep are negative (solver/strikes.hpp).
 // x, y is the place of a point on the reference feature. Rows lie in the order of their keys, so
 // the format does not depend on the layout that made them.
 #pragma once
@@ -90,10 +91,16 @@ class CacheWriter {
     }
   }
 
+  template <class S, int N>
+  static Float impulse_of(const ContactBlock<S, N>& s, int i) {
+    const Float x = Float::load(s.impulse[i]);
+    return s.struck == 0 ? x : select(mask_from_bits(s.struck), -x, x);
+  }
+
   void write(const ContactBlock<Planar, 1>& s, Float moment, Real* rows, const std::int32_t* o) {
     const Vec2 p = t_.has_friction ? load_as<Vec2>(s.tangent[0]) * Float::load(s.tangent_impulse[0])
                                    : zero_of<Vec2>();
-    store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, moment);
+    store_rows4(rows, o, impulse_of(s, 0), p.x, p.y, moment);
   }
   template <class S>
   void write(const ContactBlock<S, 1>& s, Real* rows, const std::int32_t* o) {
@@ -103,13 +110,13 @@ class CacheWriter {
       const Float first = Float::load(s.tangent_impulse[0]);
       p = fma(cross(n, t), Float::load(s.tangent_impulse[1]), t * first);
     }
-    store_rows4(rows, o, Float::load(s.impulse[0]), p.x, p.y, p.z);
+    store_rows4(rows, o, impulse_of(s, 0), p.x, p.y, p.z);
   }
   void write(const ContactBlock<Planar, 2>& s, Float moment, Real* rows, const std::int32_t* o) {
     const Float zero(Real(0));
     const Float f = t_.has_friction ? Float::load(s.tangent_impulse[0]) : zero;
-    store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]),
-                Float::load(s.impulse[0]), Float::load(s.impulse[1]));
+    store_rows4(rows, o, Float::load(s.feature_x[0]), Float::load(s.feature_x[1]), impulse_of(s, 0),
+                impulse_of(s, 1));
     store_rows4(rows + 4, o, Float::load(s.code), f, moment, zero);
   }
   template <class S>
@@ -120,9 +127,8 @@ class CacheWriter {
                 Float::load(s.feature_x[2]), Float::load(s.feature_x[3]),
                 Float::load(s.feature_y[0]), Float::load(s.feature_y[1]),
                 Float::load(s.feature_y[2]), Float::load(s.feature_y[3]));
-    store_rows8(rows + 8, o, Float::load(s.impulse[0]), Float::load(s.impulse[1]),
-                Float::load(s.impulse[2]), Float::load(s.impulse[3]), Float::load(s.code),
-                friction ? Float::load(s.tangent_impulse[0]) : zero,
+    store_rows8(rows + 8, o, impulse_of(s, 0), impulse_of(s, 1), impulse_of(s, 2), impulse_of(s, 3),
+                Float::load(s.code), friction ? Float::load(s.tangent_impulse[0]) : zero,
                 friction ? Float::load(s.tangent_impulse[1]) : zero,
                 friction ? Float::load(s.twist_impulse) : zero);
   }

@@ -111,6 +111,21 @@ MW_INLINE void put_bounce(const Constants& t, const Group& g, const Sides<S, A>&
   zero.store(bounce.total_twist);
 }
 
+// The lanes in which a point approaches as fast as in an impact. What is deeper than the margin has
+// been inside for longer.
+template <class S, int N, class A>
+MW_INLINE std::uint32_t strikes_of(const Constants& t, const Work& w,
+                                   const Approach<S, N, A>& approach,
+                                   const Manifold<GeometryOf<S>, N>& m) {
+  const Float speed = Float::load(w.strike_speed), deep(-t.margin);
+  Mask strikes = mask_from_bits(0);
+  for (int i = 0; i < N; ++i) {
+    strikes =
+        strikes | (approach.close[i] & (approach.speed[i] < -speed) & (deep < m.separation[i]));
+  }
+  return bits(strikes);
+}
+
 // Adds one block to `list`. `active` are the lanes that the narrow phase
 // worked on; lanes without a point close enough drop out.
 template <class S, int N, class A, bool kDense>
@@ -121,11 +136,12 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   BlockList& blocks = w.blocks[static_cast<int>(list)];
   auto& s = block_at<SidedBlock<S, N, A>>(blocks, blocks.count);
   const Sides<S, A> sides = find_sides<S, A, kDense>(t, w, code, s);
+  // Who asks for the contacts of now gets those.
+  const bool asked = w.recorder && !w.recorder->places;
   if constexpr (N == 1) {
-    // Who asks for the contacts of now gets those.
-    const bool asked = w.recorder && !w.recorder->places;
-    if (t.has_restitution && kernels::is_round(pair_class.kind) && !asked) {
-      turn_to_touch(t, g, code, sides, active, pose_a, pose_b, m);
+    if ((t.has_restitution || t.impact_sweeps > 0) && kernels::is_round(pair_class.kind) &&
+        !asked) {
+      turn_to_touch(t, g, w, code, sides, active, pose_a, pose_b, m);
     }
   }
   if (!t.collider_is_body) anchor_at_centres(sides, pose_a, pose_b, m);
@@ -144,6 +160,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
     mark_met<A>(t, w, touching, sides);
   }
   s.unsure = mask & ~touching;
+  s.strikes = t.impact_sweeps > 0 ? strikes_of(t, w, approach, m) & mask : 0, s.struck = 0;
   drop_lanes<S>(t, w, mask, s);
   Ints::load(key).store(s.key);
   s.apart = blocks.count > 0 &&
@@ -159,7 +176,9 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   StoredImpulses<N> stored;
   const Real* const rows = g.cache[static_cast<int>(list)].rows;
   carry_impulses(rows, at, m, s, stored);
+  if (stored.struck != 0 && !asked) end_impact(stored);
   for (int i = 0; i < N; ++i) stored.normal[i].store(s.impulse[i]);
+  s.strikes |= stored.struck & mask;
   if constexpr (N > 1 || !A::kMoves) {
     (max(-approach.pull.relative, Real(0)) * Float(t.h)).store(s.press);
   }

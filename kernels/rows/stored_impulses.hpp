@@ -41,7 +41,19 @@ inline std::uint32_t claim_capacity(const Constants& t, Work& w, ListId list, st
 template <int N>
 struct StoredImpulses {
   Float normal[N], tangent[2], twist;
+  std::uint32_t struck;  // lanes in which they are of an impact
 };
+
+// The impulses of an impact end with it: carried on, they would jam bodies between one another with
+// many times their momentum, which rounding loses.
+template <int N>
+MW_INLINE void end_impact(StoredImpulses<N>& s) {
+  const Float zero(Real(0));
+  const Mask ends = mask_from_bits(s.struck);
+  for (Float& x : s.normal) x = select(ends, zero, x);
+  for (Float& x : s.tangent) x = select(ends, zero, x);
+  s.twist = select(ends, zero, s.twist);
+}
 
 // A point's friction impulse is kept as a world vector, since its tangents rotate with it.
 template <class S>
@@ -60,7 +72,8 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
     load_rows4(rows, stored, out.normal[0], kept.x, kept.y, unused);
     out.tangent[0] = cross(m.normal, kept);
   }
-  out.normal[0] = select(m.valid[0], out.normal[0], zero);
+  out.struck = bits(out.normal[0] < zero);
+  out.normal[0] = select(m.valid[0], abs(out.normal[0]), zero);
 }
 
 // Points are told apart by their place on the reference feature. Guards have none: they begin
@@ -82,7 +95,9 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
     load_rows4(rows + 4, stored, code, out.tangent[0], unused, unused);
   }
   const Mask same = code == m.code;
-  Float sum = zero;
+  Float sum = zero, least = zero;
+  for (int j = 0; j < N; ++j) least = min(old[j], least);
+  out.struck = bits(least < zero);
   for (int i = 0; i < N; ++i) {
     // From the nearest; the first of several in one place, since points that a manifold does not
     // have repeat its first with no impulse.
@@ -90,7 +105,7 @@ MW_INLINE void carry_impulses(const Real* rows, const std::int32_t* stored,
     for (int j = 0; j < N; ++j) {
       const Float dx = old_x[j] - m.feature_x[i], dy = old_y[j] - m.feature_y[i];
       const Float distance2 = fma(dx, dx, dy * dy);
-      x = select(distance2 < nearest, old[j], x);
+      x = select(distance2 < nearest, abs(old[j]), x);
       nearest = min(distance2, nearest);
     }
     out.normal[i] = select(same & m.valid[i] & !m.guard[i], x, zero);

@@ -23,11 +23,13 @@ MW_INLINE typename S::Vec velocity_at(const Constants& t, const SideState<S, Fre
   return point_velocity(side.velocity, pose - side.body.centre);
 }
 
-// In the lanes of `active` in which the pair bounces. Points are from the shapes' centres still.
+// In the lanes of `active` in which the pair bounces, or hits as fast as in an impact. Points are
+// from the shapes' centres still.
 template <class S, class A>
-MW_INLINE void turn_to_touch(const Constants& t, const Group& g, const std::int32_t* code,
-                             const Sides<S, A>& sides, Mask active, typename S::Vec pose_a,
-                             typename S::Vec pose_b, Manifold<GeometryOf<S>, 1>& m) {
+MW_INLINE void turn_to_touch(const Constants& t, const Group& g, const Work& w,
+                             const std::int32_t* code, const Sides<S, A>& sides, Mask active,
+                             typename S::Vec pose_a, typename S::Vec pose_b,
+                             Manifold<GeometryOf<S>, 1>& m) {
   const Float zero(Real(0)), one(Real(1));
   const Float radius_a = dot(m.normal, m.point_a[0]), radius_b = -dot(m.normal, m.point_b[0]);
   const Float gap = m.separation[0], reach = radius_a + radius_b;
@@ -38,7 +40,9 @@ MW_INLINE void turn_to_touch(const Constants& t, const Group& g, const std::int3
   Mask turns = active & m.valid[0] & (zero < gap) & (b < zero);
   if (!any(turns)) return;
   const MaterialPair e = load_materials<A>(t, g, code, bits(active), &Material::restitution);
-  turns = turns & (zero < max(e.a, e.b));
+  Mask hits = zero < max(e.a, e.b);
+  if (t.impact_sweeps > 0) hits = hits | (b < -(Float::load(w.strike_speed) * (reach + gap)));
+  turns = turns & hits;
   // v^2 t^2 + 2 b t + c = 0, its earlier root; they pass at -b / v^2.
   const Float c = gap * (gap + (reach + reach)), rest = fms(b, b, v2 * c);
   const Mask touch = zero <= rest;

@@ -7,6 +7,7 @@
 #include "kernels/rows/solve_list.hpp"
 #include "kernels/solver/energy.hpp"
 #include "kernels/solver/resist.hpp"
+#include "kernels/solver/strikes.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
@@ -15,10 +16,12 @@ struct Passes {
   template <Pass kPass>
   static void solve(const Constants& t, const Group&, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
+    if (kPass == Pass::bias && t.impact_sweeps > 0) begin_strikes<S, kDense>(t, w);
+    const bool settles = w.struck != 0;  // then bounces wait for what the sweeps find
     for_each_list<S>(w, [&]<int N, class A>(BlockList& list) {
       const auto finish = [&](int i) {
         if constexpr (kPass == Pass::relax) {
-          if (!t.has_restitution) return;
+          if (!t.has_restitution || settles) return;
           accumulate_bounce(block_at<SidedBlock<S, N, A>>(list, i), bounce_at<S, N>(list, i),
                             t.has_friction);
         }
@@ -28,6 +31,18 @@ struct Passes {
       } else {
         solve_in_twos<kDense, kPass, SidedBlock<S, N, A>>(t, w, list, finish);
       }
+    });
+    if constexpr (kPass != Pass::warm_start) {
+      if (w.struck == 0) return;
+      settle_strikes<S, kDense>(t, w, kPass);
+      if constexpr (kPass == Pass::relax) {
+        if (t.has_restitution) accumulate_bounces(t, w);
+      }
+    }
+  }
+  static void accumulate_bounces(const Constants& t, Work& w) {
+    for_each_block<S>(w, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      accumulate_bounce(s, bounce_at<S, N>(list, i), t.has_friction);
     });
   }
 
@@ -109,6 +124,7 @@ struct Passes {
 
   static void enter(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     enter_velocities<S, kDense>(t, g, work_of(scratch));
+    find_strike_speeds<S>(t, g, work_of(scratch));
   }
   static void advance(const Constants& t, const Group&, kernels::Scratch* scratch) {
     advance_displacement<S, kDense>(t, work_of(scratch));

@@ -28,7 +28,8 @@ struct BlockList {
   std::size_t bounce_stride;  // bytes of a block's restitution rows
   unsigned char* blocks;
   unsigned char* bounces;
-  unsigned char* resistances;  // [block] Resistance
+  unsigned char* resistances;      // [block] Resistance
+  unsigned char* impulses_before;  // [block] BlockImpulses, when sweeps after an impact began
 };
 
 // Takes down contact points while the collide stages run: of one lane (Kernels::record), or the
@@ -271,11 +272,17 @@ struct Work {
   Real* warmed;        // velocity after warm start
   Real* impulse_part;  // what warm starting adds to the velocity of the next substep
   Real* displacement;
+  Real* velocity_before;        // when sweeps after an impact began
+  std::uint32_t* stirred;       // [2][body] lanes in which impacts have changed it
+  std::uint32_t struck;         // lanes in which a contact has taken an impact in this substep
+  std::uint32_t struck_before;  // all, if another pass of the substep has asked before
+  bool settles;                 // sweeps follow an impact
   Real* delta_v_storage;
   Real* delta_v;  // what each lane adds to velocities in a substep; nullptr: all the same
   Real* factor_storage;
-  Real* factor;       // what drag leaves of them; nullptr: all the same
-  int rows_per_lane;  // bodies + dummy + world + padding
+  Real* factor;                           // what drag leaves of them; nullptr: all the same
+  int rows_per_lane;                      // bodies + dummy + world + padding
+  alignas(64) Real strike_speed[kLanes];  // m/s, of the slowest impacts
   alignas(64) std::int32_t velocity_base[kLanes];  // offset of a lane's velocity rows
   alignas(64) std::int32_t pose_base[kLanes];
   alignas(64) std::int32_t body_base[kLanes];

@@ -46,6 +46,9 @@ class ContactOptions:
     cast_between_moving: bool = False  # also at moving shapes
     # number of passes of a step that find contacts; None: 1, or more for thin bodies
     collision_passes: Optional[int] = None
+    # tgs_soft only, at most so many sweeps that share an impact out among several bodies;
+    # None: 64 for up to 12 moving bodies without joints, else 0
+    impact_sweeps: Optional[int] = None
 
 
 @dataclass(slots=True, kw_only=True)

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "src/plan/collision_passes.hpp"
+#include "src/plan/impact_sweeps.hpp"
 #include "src/plan/joint_method.hpp"
 #include "src/plan/plan_data.hpp"
 #include "src/plan/substeps.hpp"
@@ -35,6 +36,8 @@ void resolve_options(PlanData& plan) {
   const SubstepChoice substeps = choose_substeps(extremes(plan), *o.length_unit);
   const PassChoice passes = choose_passes(extremes(plan));
   choose("contact.collision_passes", o.contact.collision_passes, passes.passes, passes.why);
+  const SweepsChoice impacts = choose_impact_sweeps(plan.scene);
+  choose("contact.impact_sweeps", o.contact.impact_sweeps, impacts.sweeps, impacts.why);
   const int n = *o.contact.collision_passes;
   const auto whole = [n](int number) {
     const int up = (number + n - 1) / n * n;

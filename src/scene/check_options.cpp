@@ -8,6 +8,7 @@ namespace manyworlds::detail {
 namespace {
 
 constexpr int kMaxRestitutionSweeps = 64;
+constexpr int kMaxImpactSweeps = 1000;
 constexpr int kMaxIterations = 10000;
 constexpr int kMaxManifolds = 1 << 16;
 
@@ -92,6 +93,9 @@ void check_contact(Checker& checker, const ContactOptions& o) {
   if (o.collision_passes) {
     checker.between("options.contact.collision_passes", *o.collision_passes, 1, kMaxPasses);
   }
+  if (o.impact_sweeps) {
+    checker.between("options.contact.impact_sweeps", *o.impact_sweeps, 0, kMaxImpactSweeps);
+  }
 }
 
 void check_joint(Checker& checker, const JointOptions& o) {
@@ -128,6 +132,19 @@ void check_options(Checker checker, const Options& options) {
     checker.between("options.contact_capacity", *options.contact_capacity, 1, kMaxManifolds);
   }
   if (options.bounds) check_bounds(checker, *options.bounds);
+}
+
+void check_impact_sweeps(Checker checker, const Scene& scene) {
+  const Options& o = scene.options;
+  if (o.contact.impact_sweeps.value_or(0) <= 0) return;
+  const std::string is = "is " + std::to_string(*o.contact.impact_sweeps);
+  if (o.solver.method != Solver::tgs_soft) {
+    checker.add("options.contact.impact_sweeps",
+                is + ", must be 0 with " + to_string(o.solver.method));
+  } else if (!scene.joints.empty()) {
+    checker.add("options.contact.impact_sweeps",
+                is + ", must be 0 in scenes with joints, which do not take part in impacts yet");
+  }
 }
 
 }  // namespace manyworlds::detail

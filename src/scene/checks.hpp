@@ -103,6 +103,7 @@ void check_shape(Checker checker, const Body& body, const Shape& shape);
 // Everything of the body, its shapes included. `density_valid`: whether Options::density is.
 void check_body(Checker checker, const Scene& scene, const Body& body, bool density_valid);
 void check_options(Checker checker, const Options& options);
+void check_impact_sweeps(Checker checker, const Scene& scene);
 void check_joint(Checker checker, const Scene& scene, const Joint& joint);
 void check_control(Checker checker, const Scene& scene, std::size_t index);
 // Of Solver::newton (check_newton.cpp).

@@ -61,6 +61,7 @@ std::vector<Issue> validate(const Scene& scene) {
   // Needed before the bodies, whose masses depend on the default density, but listed after them.
   std::vector<Issue> option_issues;
   check_options(detail::Checker(option_issues, scene.space), scene.options);
+  check_impact_sweeps(detail::Checker(option_issues, scene.space), scene);
   bool density_valid = true;
   for (const Issue& issue : option_issues) density_valid &= issue.place != "options.density";
 

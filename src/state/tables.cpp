@@ -15,6 +15,11 @@ namespace {
 
 // Of gravity: impacts that these give do not bounce (ContactOptions::restitution_threshold).
 constexpr double kPassesThatRest = 2;
+constexpr double kSlowImpact = 1.0 / 16;  // of the push-out speed: slower is no impact
+// Of impulses, in the first and in the last round after an impact (kernels/solver/strikes.hpp).
+template <class Real>
+constexpr double kFirstTolerance = sizeof(Real) == 4 ? 1e-5 : 1e-11;
+constexpr double kLastTolerance = 1;
 constexpr double kMostSag = 0.01;  // of the length unit, under what presses on fixed shapes
 constexpr double kDeep = 4;        // times the speed per length unit of overlap, up to twice it
 
@@ -114,6 +119,11 @@ void TablesOf<Real>::add_options(const PlanData& plan) {
   // Slower changes may be those of the push-out. Not by the world's own gravity: worlds whose
   // gravity varies would not have the bits of their scenes.
   t.blow_speed = t.push_out_speed;
+  t.impact_sweeps = *o.contact.impact_sweeps;
+  t.strike_speed = static_cast<Real>(kSlowImpact * *o.contact.push_out_speed);
+  t.strike_tolerance = static_cast<Real>(kFirstTolerance<Real>);
+  t.strike_growth = static_cast<Real>(
+      std::pow(kLastTolerance / kFirstTolerance<Real>, 1.0 / std::max(t.impact_sweeps, 1)));
   t.push_out_rate = static_cast<Real>(kDeep * *o.contact.push_out_speed / *o.length_unit);
   t.margin = static_cast<Real>(2 * min_margin(plan));
   t.half_margin = static_cast<Real>(min_margin(plan));

@@ -31,7 +31,9 @@ TEST_CASE("options of the newton solver have ranges", "[fast][validate][newton]"
   check_each(robot, "options.contact.",
              {{"collision_passes",
                "is 2, the newton solver supports 1 only: it finds contacts in every substep",
-               [](Scene& s) { s.options.contact.collision_passes = 2; }}});
+               [](Scene& s) { s.options.contact.collision_passes = 2; }},
+              {"impact_sweeps", "is 8, must be 0 with newton",
+               [](Scene& s) { s.options.contact.impact_sweeps = 8; }}});
   Scene other = empty_scene(Space::spatial);
   other.add(body_of(shape_of(Sphere{1}), Vec3::Zero()));
   check_each(other, "options.",

@@ -106,6 +106,14 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
        [](Scene& s) { s.options.contact.collision_passes = 0; }},
       {"contact.collision_passes", "is 65",
        [](Scene& s) { s.options.contact.collision_passes = 65; }},
+      {"contact.impact_sweeps", "is -1, must be between 0 and 1000",
+       [](Scene& s) { s.options.contact.impact_sweeps = -1; }},
+      {"contact.impact_sweeps", "is 1001",
+       [](Scene& s) { s.options.contact.impact_sweeps = 1001; }},
+      {"contact.impact_sweeps", "is 8, must be 0 with penalty",
+       [](Scene& s) {
+         s.options.solver.method = Solver::penalty, s.options.contact.impact_sweeps = 8;
+       }},
       {"contact_capacity", "is 0, must be between 1 and 65536",
        [](Scene& s) { s.options.contact_capacity = 0; }},
       {"contact_capacity", "is 65537", [](Scene& s) { s.options.contact_capacity = 65537; }},
