@@ -74,7 +74,9 @@ struct KeptPoints {
 };
 
 // How far beyond the limit points are kept, in the size of the smaller face, and what they count
-// against those within it.
+// against those within the margin of it, which count the less the nearer to it they are. Counted
+// alike, far points above an edge that carries displaced its other corners, and what lay on the
+// edge stood on other corners in every step.
 inline constexpr Real kKeptBeyond = Real(1), kBeyondCounts = Real(1e-3);
 
 // Points that are as far out, or as deep but for `level`, m, are told apart by their place and
@@ -99,7 +101,7 @@ MW_INLINE void keep_four(Points& p, Float margin, Float level, Float extent2, Ke
   // What is as near as the deepest point, or within the margin, may exert a force. What is not may
   // come down in the same step when the bodies turn about the deepest point.
   const Float limit = margin + max(z, zero);
-  const Float beyond = fma(size, Float(kKeptBeyond), limit);
+  const Float beyond = fma(size, Float(kKeptBeyond), limit), per_margin = one / margin;
   out.x[0] = x, out.y[0] = y, out.z[0] = z;
   out.valid[0] = z < Float(kOutOfReach);
   const Float x0 = x, y0 = y;
@@ -107,7 +109,7 @@ MW_INLINE void keep_four(Points& p, Float margin, Float level, Float extent2, Ke
   // From here on x, y are relative to the first point; what does not count collapses onto it.
   Float best = extent2 * Float(Real(2e-6)), far_x = zero, far_y = zero, far_z = Real(kOutOfReach);
   const auto counts = [&](Float height) __attribute__((always_inline)) {
-    return select(height < limit, one, Float(kBeyondCounts));
+    return min(max((limit - height) * per_margin, Float(kBeyondCounts)), one);
   };
   for (int i = 0; i < p.count(); ++i) {
     const Mask near = p.z[i] < beyond;
