@@ -146,8 +146,8 @@ MW_INLINE void solve_rows(const Constants& t, Work& w, SidedBlock<S, N, A>& s, V
         keep[i] = select(zero < apart_by[i], zero, soft.impulse_scale);
         push_out[i] = A::kMoves ? push : clamp(gap * Float(-t.push_out_rate), push, push + push);
       }
-      // An impact is hard: light bodies under heavy ones would give way. Each sweep pushes out what
-      // overlaps once more, so slowly.
+      // Sweeps after an impact are hard, or heavy bodies would sink into light ones. Each of them
+      // pushes overlaps out once more, hence the lower speed.
       if (w.settles) {
         for (int i = 0; i < N; ++i) {
           bias[i] = max(bias[i], push_out[i] * -kPushUnderLoad), keep[i] = zero;
@@ -277,7 +277,7 @@ MW_INLINE RowVelocities<S, A, kDense> velocities_of(const Work& w, const SidedBl
   return {w, s};
 }
 
-// Not inlined: impacts ask for single blocks again (solver/strikes.hpp).
+// Not inlined: solver/strikes.hpp calls it for single blocks, too.
 template <bool kDense, Pass kPass, class S, int N, class A>
 __attribute__((noinline)) void solve_block(const Constants& t, Work& w, SidedBlock<S, N, A>& s) {
   auto v = velocities_of<kDense>(w, s);

@@ -136,7 +136,7 @@ void add_contact(const Constants& t, const Group& g, Work& w, ListId list,
   BlockList& blocks = w.blocks[static_cast<int>(list)];
   auto& s = block_at<SidedBlock<S, N, A>>(blocks, blocks.count);
   const Sides<S, A> sides = find_sides<S, A, kDense>(t, w, code, s);
-  // Who asks for the contacts of now gets those.
+  // Queries of contacts return those of the current state.
   const bool asked = w.recorder && !w.recorder->places;
   if constexpr (N == 1) {
     if ((t.has_restitution || t.impact_sweeps > 0) && kernels::is_round(pair_class.kind) &&

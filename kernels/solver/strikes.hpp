@@ -1,19 +1,19 @@
 // Strikes: impacts of several bodies in one substep are one system, with or without bounce.
 //
-// One sweep over the contacts leaves to the order of the rows what a ball gives two others, or a
-// heavy body a light one. So where an impact has reached a contact, sweeps follow in the passes
-// bias and relax, forward and backward, until nothing changes by a share of the impact's speed. A
-// block is solved again only in the lanes in which one of its bodies has changed since, so what
-// happens elsewhere in a world decides nothing. The share grows from round to round up to a whole
-// in the last.
+// After one sweep over the contacts, the order of the rows decides how a ball that hits two others
+// shares its momentum. So where an impact has reached a contact, more sweeps follow in the bias and
+// relax passes, forward and backward, until no impulse changes by more than a tolerance. A block
+// is solved again only in the lanes in which one of its bodies has changed since, so that bodies
+// elsewhere in a world have no influence. The tolerance grows from sweep to sweep, up to the whole
+// impulse in the last.
 //
-// An impact is where a point approaches faster than strike_speed when the step begins
-// (rows/prepare.hpp) at a body with several points of contact. By impulses or by speeds within a
-// substep it could not be told from a load whose stored impulse was lost. From there it reaches
-// what shares a body. In the substeps that follow blocks that it has reached are struck where they
-// change as much again: what was carried from the impact is taken back, and gaps close that it has
-// set going. Impulses of the last substep end with the step (rows/stored_impulses.hpp); their sign
-// tells the next one what has been struck (rows/contact_cache.hpp).
+// An impact is a point that approaches faster than strike_speed when the step begins
+// (rows/prepare.hpp), at a body with several points of contact. Impulses or speeds within a
+// substep cannot distinguish it from a load whose stored impulse was lost. From there it spreads
+// to contacts that share a body. In later substeps, blocks that it has reached are struck again
+// where they change as much: warm starting repeats the impulse of the impact, and gaps close that
+// the impact has set moving. Impulses of an impact in the last substep are not kept as warm start
+// (rows/stored_impulses.hpp); their sign marks the block as struck (rows/contact_cache.hpp).
 #pragma once
 
 #include "kernels/motion/integrate.hpp"
