@@ -176,6 +176,15 @@ void resist_in_some(Random& kind, Scene& scene, const Scale& scale) {
   }
 }
 
+double unit_mass(Space space, const Scale& scale) {
+  return 1000 * std::pow(scale.length, space == Space::planar ? 2 : 3);
+}
+void set_mass(Scene& scene, BodyId id, double mass) {
+  Body& body = scene.at(id);
+  for (Shape& shape : body.shapes) shape.density = 1;
+  const double density = mass / mass_properties(scene, body).mass;
+  for (Shape& shape : body.shapes) shape.density = density;
+}
 MassProperties mass_of(const Scene& scene, BodyId body) {
   return mass_properties(scene, scene.at(body));
 }

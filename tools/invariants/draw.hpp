@@ -37,6 +37,10 @@ Vec3 draw_axis(Random& random, Space space);
 // In a third of the kinds bodies resist rolling and spinning by up to 0.2 lengths.
 void resist_in_some(Random& kind, Scene& scene, const Scale& scale);
 
+// kg, of a cube of water of the scale's length; planar: per metre of depth.
+double unit_mass(Space space, const Scale& scale);
+// Gives all shapes of a body the density with which it weighs `mass`, kg.
+void set_mass(Scene& scene, BodyId body, double mass);
 // Mass and inertia at the start.
 MassProperties mass_of(const Scene& scene, BodyId body);
 // Inertia in world axes.

@@ -37,19 +37,10 @@ Judge energy_judge(const Scene& scene, double length) {
   };
 }
 
-void set_mass(Scene& scene, BodyId id, double mass) {
-  Shape& shape = scene.at(id).shapes[0];
-  shape.density = 1;
-  shape.density = mass / mass_of(scene, id).mass;
-}
-
 Material draw_material(Random& kind) {
   const double friction = kind.chance(0.2) ? 0 : kind.uniform(0, 2);
   const double restitution = kind.chance(0.4) ? 0 : kind.chance(0.3) ? 1 : kind.uniform(0, 1);
   return {friction, restitution};
-}
-double unit_mass(Space space, const Scale& scale) {
-  return 1000 * std::pow(scale.length, space == Space::planar ? 2 : 3);
 }
 
 // Bodies that fall on the ground, in some kinds into a pit.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "tools/invariants/draw.hpp"
+#include "tools/invariants/momenta.hpp"
 
 namespace manyworlds::invariants {
 namespace {
@@ -16,60 +16,13 @@ constexpr double kMostTravel = 0.99;  // body lengths per step
 
 enum class Momentum { linear, angular };
 
-// ---- what is measured
-// -----------------------------------------------------------------------------
-
-struct Momenta {
-  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // N s; N m s about the centre of mass
-  double linear_sum = 0, angular_sum = 0;              // of magnitudes
-};
-
-Momenta momenta_of(const std::vector<MassProperties>& masses, const std::vector<BodyNow>& bodies) {
-  Momenta out;
-  double total = 0;
-  Vec3 center = Vec3::Zero();
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const double m = masses[i].mass;
-    center += m * (bodies[i].position + bodies[i].rotation * masses[i].center);
-    out.linear += m * bodies[i].velocity, out.linear_sum += m * bodies[i].velocity.norm();
-    total += m;
-  }
-  center /= total;
-  const Vec3 drift = out.linear / total;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const BodyNow& b = bodies[i];
-    const Vec3 arm = b.position + b.rotation * masses[i].center - center;
-    const Vec3 orbit = masses[i].mass * arm.cross(b.velocity - drift);
-    const Vec3 spin = inertia_of(masses[i], b.rotation) * b.spin;
-    out.angular += orbit + spin, out.angular_sum += orbit.norm() + spin.norm();
-  }
-  return out;
-}
-
 Judge momentum_judge(const Scene& scene, Momentum which) {
-  std::vector<MassProperties> masses;
-  for (const Body& body : scene.bodies) masses.push_back(mass_properties(scene, body));
-  return [masses, which, start = Momenta()](const Seen& seen) mutable {
+  return [masses = masses_of(scene), which, start = Momenta()](const Seen& seen) mutable {
     const Momenta now = momenta_of(masses, seen.now);
     if (seen.step == 0) start = now;
     return which == Momentum::linear ? (now.linear - start.linear).norm() / start.linear_sum
                                      : (now.angular - start.angular).norm() / start.angular_sum;
   };
-}
-
-// ---- scenes
-// ---------------------------------------------------------------------------------------
-
-// Gives all shapes of a body the density with which it weighs `mass`, kg.
-void set_mass(Scene& scene, BodyId id, double mass) {
-  Body& body = scene.at(id);
-  for (Shape& shape : body.shapes) shape.density = 1;
-  const double density = mass / mass_properties(scene, body).mass;
-  for (Shape& shape : body.shapes) shape.density = density;
-}
-
-double unit_mass(Space space, const Scale& scale) {
-  return 1000 * std::pow(scale.length, space == Space::planar ? 2 : 3);
 }
 
 // Bodies of any shape, at the origin.
