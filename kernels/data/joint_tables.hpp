@@ -20,6 +20,10 @@ enum class PartKind : std::int32_t {
   distance,  // row between the anchors
   pulley,    // row for the length of the rope
 };
+// What the other parts of a row's joint hold: rotations (all, or those that lean the z axes against
+// each other), and motions of the anchors (all, or those across x of A).
+enum class TurnHold : std::int32_t { free, swing, lock };
+enum class PointHold : std::int32_t { free, line, point };
 // Stored per part: the impulse on B as a world vector, or of a row what holds or drives it, of its
 // lower and of its upper limit.
 inline constexpr int kPartImpulses = 3;
@@ -74,8 +78,10 @@ struct JointPart {
   bool soft_limit;              // its limits are springs
   bool spring;                  // a point that is drawn with limited force
   bool force;                   // nothing but a spring, which the integrator of the plan evaluates
-  bool direct;                  // of a tree that is solved at once, not swept over
-  bool gradual;                 // begins apart, and closes by its `pull`
+  TurnHold turn_hold;
+  PointHold point_hold;
+  bool direct;                                   // of a tree that is solved at once, not swept over
+  bool gradual;                                  // begins apart, and closes by its `pull`
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 // May its rows give energy to the bodies?

@@ -21,12 +21,12 @@ inline constexpr Real kUnbounded = Real(1e30);  // N s or N m s, of drives
 // What rounding leaves of speeds does not change active sets.
 inline constexpr Real kActiveSlack = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-12);
 
-template <class S, bool kLinear>
+template <class S>
 class Bound {
  public:
   // closes: limits are closed, too. `first`: the substep has no impulses yet.
   MW_INLINE Bound(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
-                  Row<S, kLinear>& s, EdgeDof<S>& dof, const DofFactors<S>& factors, bool reversed,
+                  Row<S>& s, EdgeDof<S>& dof, const DofFactors<S>& factors, bool reversed,
                   bool closes, bool first)
       : part_(part),
         c_(constants),
@@ -217,7 +217,7 @@ class Bound {
 
   const JointPart& part_;
   const Joint& c_;
-  Row<S, kLinear>& s_;
+  Row<S>& s_;
   EdgeDof<S>& dof_;
   const DofFactors<S>& factors_;  // of the solves
   bool closes_, first_;
@@ -242,18 +242,18 @@ class EdgeBounds {
   template <class Look>
   MW_INLINE void visit_slide(int i, Look look) const {
     const TreeEdge& edge = t_.joint_trees.edge[i];
-    visit<true>(edge, edge.slide, edge_rows<S>(w_, i).slide, factors_.edge[i].slide, look);
+    visit(edge, edge.slide, edge_rows<S>(w_, i).slide, factors_.edge[i].slide, look);
   }
   template <class Look>
   MW_INLINE void visit_turn(int i, Look look) const {
     const TreeEdge& edge = t_.joint_trees.edge[i];
-    visit<false>(edge, edge.angle, edge_rows<S>(w_, i).turn, factors_.edge[i].turn, look);
+    visit(edge, edge.angle, edge_rows<S>(w_, i).turn, factors_.edge[i].turn, look);
   }
   // look(bound) at the cone of a ball joint.
   template <class Look>
   MW_INLINE void visit_cone(int i, Look look) const {
     const TreeEdge& edge = t_.joint_trees.edge[i];
-    visit<false>(edge, edge.cone, edge_rows<S>(w_, i).slide, factors_.edge[i].slide, look);
+    visit(edge, edge.cone, edge_rows<S>(w_, i).slide, factors_.edge[i].slide, look);
   }
   // look(bound, dof, rows of its edge) at all of them.
   template <bool kBackwards = false, class Look>
@@ -271,13 +271,12 @@ class EdgeBounds {
   }
 
  private:
-  template <bool kLinear, class Look>
+  template <class Look>
   MW_INLINE void visit(const TreeEdge& edge, int part, EdgeDof<S>& dof,
                        const DofFactors<S>& factors, Look look) const {
     if (part < 0) return;
-    look(Bound<S, kLinear>(t_, g_, t_.part[part], constants_of_part(g_, part),
-                           part_rows<S, Row<S, kLinear>>(w_, part), dof, factors, edge.reversed,
-                           closes_, first_));
+    look(Bound<S>(t_, g_, t_.part[part], constants_of_part(g_, part),
+                  part_rows<S, Row<S>>(w_, part), dof, factors, edge.reversed, closes_, first_));
   }
 
   const Constants& t_;

@@ -189,7 +189,7 @@ class EdgeFinder {
   MW_INLINE void put_limits(const TreeEdge& edge, EdgeRows<S>& s) const {
     const auto put = [&](int part, Real* axis) {
       if (part < 0) return;
-      store(axis, load_as<Vec>(part_rows<S, Row<S, false>>(w_, part).angular_b[0]));
+      store(axis, load_as<Vec>(part_rows<S, Row<S>>(w_, part).angular_b[0]));
     };
     put(edge.cone, s.slide_axis[0]), put(edge.angle, s.turn_axis[0]);
   }

@@ -121,7 +121,7 @@ class GeometricStiffness {
       for (int i = 0; i < t_.joint_trees.edges; ++i) {
         const kernels::TreeEdge& edge = t_.joint_trees.edge[i];
         if (edge.cone < 0) continue;
-        const auto& row = part_rows<S, Row<S, false>>(w_, edge.cone);
+        const auto& row = part_rows<S, Row<S>>(w_, edge.cone);
         const Float lean = max(Float::load(row.value), Float(Real(kLeastLean)));
         const Float half = lean * half_tangent_ratio(lean * lean);  // its tangent
         Float g = Float::load(row.impulse[2]) * inverse_or_zero(half);

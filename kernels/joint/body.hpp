@@ -182,6 +182,17 @@ MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s) {
   return anchors_now<S, kDense, kMoved>(w, s, none);
 }
 
+// Both arms to one point between the anchors: two forces that are apart would be a moment on the
+// pair. The nearer to the anchor of the lighter body, so that what hangs on the world is pulled
+// where it is held, and in the same way whichever body is A.
+template <class S>
+MW_INLINE void meet(const PartBodies<S>& s, MovedAnchors<S>& at) {
+  const Float a = Float::load(s.a.inv_mass),
+              share = a * inverse_or_zero(a + Float::load(s.b.inv_mass));
+  const auto of_b = at.gap * share;
+  at.arm_a = at.arm_a + (at.gap - of_b), at.arm_b = at.arm_b - of_b;
+}
+
 // The speed at which an error is corrected, capped by length: what is far apart closes steadily.
 MW_INLINE Float pull_of(Float error, Float rate, Float cap) {
   return clamp(error * rate, -cap, cap);

@@ -21,15 +21,11 @@ template <class S>
 MW_INLINE Float along_row(const PartBodies<S>& s) {
   return Float::load(s.impulse[0]) + (Float::load(s.impulse[1]) - Float::load(s.impulse[2]));
 }
-template <class S, bool kLinear>
-MW_INLINE Impulse<S> impulse_of(const Row<S, kLinear>& s) {
-  Impulse<S> out{zero_of<typename S::Vec>(), zero_of<typename S::Ang>()};
-  if constexpr (kLinear) {
-    out.linear = load_as<typename S::Vec>(s.linear_b[0]) * along_row(s);
-  } else {
-    out.angular = load_as<typename S::Ang>(s.angular_b[0]) * along_row(s);
-  }
-  return out;
+template <class S>
+MW_INLINE Impulse<S> impulse_of(const Row<S>& s) {
+  const Float along = along_row(s);
+  return {load_as<typename S::Vec>(s.linear_b[0]) * along,
+          load_as<typename S::Ang>(s.moment[0]) * along};
 }
 // Points and lines keep a linear impulse, locks and swings an angular one.
 template <class S>

@@ -13,8 +13,8 @@ struct Driven {
   Float impulse[S::kDim], speed[S::kDim];
   int rows = 0;
 };
-template <class S, bool kLinear, class Velocities>
-MW_INLINE Driven<S> driven(const JointPart& part, const Row<S, kLinear>& s, const Velocities& v) {
+template <class S, class Velocities>
+MW_INLINE Driven<S> driven(const JointPart& part, const Row<S>& s, const Velocities& v) {
   Driven<S> out;
   out.rows = 1;
   out.speed[0] = speed_of(s, v);

@@ -17,8 +17,8 @@ template <class V, class W>
 MW_INLINE Gap gap_of(V error, V by_mass, W impulse) {
   return {dot(error, by_mass), length_of(error) * length_of(impulse)};
 }
-template <class S, bool kLinear>
-MW_INLINE Gap gap_of(const JointPart& part, const Joint& constants, const Row<S, kLinear>& s) {
+template <class S>
+MW_INLINE Gap gap_of(const JointPart& part, const Joint& constants, const Row<S>& s) {
   const Float zero(Real(0)), value = Float::load(s.value), mass = inverse_or_zero(Float::load(s.k));
   Float error = zero;
   if (part.equality) error = value - Float(constants.rest);

@@ -13,8 +13,7 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 template <class S>
 inline constexpr std::size_t kPartBytes = [] {
   std::size_t most = sizeof(PointRows<S>);
-  for (const std::size_t n :
-       {sizeof(LockRows<S>), sizeof(LineRows<S>), sizeof(Row<S, true>), sizeof(Row<S, false>)}) {
+  for (const std::size_t n : {sizeof(LockRows<S>), sizeof(LineRows<S>), sizeof(Row<S>)}) {
     most = n > most ? n : most;
   }
   if constexpr (S::kDim == 3) most = sizeof(SwingRows<S>) > most ? sizeof(SwingRows<S>) : most;
@@ -34,10 +33,7 @@ MW_INLINE void for_each_part(const Constants& t, Work& w, int first, int end, Vi
       case PartKind::swing:
         if constexpr (S::kDim == 3) visit(*reinterpret_cast<SwingRows<S>*>(at), part, i);
         break;
-      case PartKind::angle:
-      case PartKind::twist:
-      case PartKind::cone: visit(*reinterpret_cast<Row<S, false>*>(at), part, i); break;
-      default: visit(*reinterpret_cast<Row<S, true>*>(at), part, i);
+      default: visit(*reinterpret_cast<Row<S>*>(at), part, i);
     }
   }
 }
@@ -75,6 +71,34 @@ struct JointPasses {
     w.touched[part.body_b] |= s.mask;
   }
 
+  // The state has what each part of a joint does; while they are solved, what a held row makes the
+  // other parts do belongs to the row. Adds that to them, `sign` times.
+  template <class Rows>
+  static void share_reactions(const Constants&, Work&, const JointPart&, int, const Rows&, Real) {}
+  static void share_reactions(const Constants& t, Work& w, const JointPart& part, int index,
+                              const Row<S>& s, Real sign) {
+    if (!is_held(part)) return;
+    const Float p = along_row(s) * Float(sign);
+    const auto add = [p](Real* to, auto change) {
+      store(to, load_as<decltype(change)>(to) + change * p);
+    };
+    for (int i = index + 1; i < t.parts && t.part[i].joint == part.joint; ++i) {
+      auto& other =
+          *reinterpret_cast<PartBodies<S>*>(w.parts + static_cast<std::size_t>(i) * kPartBytes<S>);
+      switch (t.part[i].kind) {
+        case PartKind::point:
+        case PartKind::line:
+          add(other.impulse[0], load_as<typename S::Vec>(s.reaction_force[0]));
+          break;
+        case PartKind::lock:
+        case PartKind::swing:
+          add(other.impulse[0], load_as<typename S::Ang>(s.reaction_moment[0]));
+          break;
+        default: break;
+      }
+    }
+  }
+
   // Rows at the start of the step, with the impulses of the last one.
   static void prepare_parts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
@@ -83,6 +107,9 @@ struct JointPasses {
       prepare_bodies(t, g, w, part, i, s);
       prepare(t, g, part, constants, s);
       refresh<S, kDense, false>(w, part, constants, s);
+    });
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      share_reactions(t, w, part, i, s, Real(-1));
     });
   }
 
@@ -136,6 +163,9 @@ struct JointPasses {
 
   static void keep(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      share_reactions(t, w, part, i, s, Real(1));
+    });
     for_each_part<S>(t, w, [&](auto& s, const JointPart&, int i) {
       const Mask lanes = mask_from_bits(s.mask & ~w.frozen);
       Real* to = g.joint_impulse + i * kernels::kPartImpulses * kLanes;

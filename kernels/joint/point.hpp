@@ -48,7 +48,9 @@ void prepare(const Constants& t, const Group& g, const JointPart& part, const Jo
 template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& constants,
                        PointRows<S>& s) {
-  const auto now = anchors_now<S, kDense, kMoved>(w, s);
+  auto now = anchors_now<S, kDense, kMoved>(w, s);
+  // Not in trees: their contacts count on what these have had, whose energy that would raise.
+  if (!part.direct) meet(s, now);
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   if (kMoved && part.direct) return;
   typename PointMass<S>::Type k{};

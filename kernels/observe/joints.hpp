@@ -9,9 +9,9 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 // A row at the present state; without effective mass, since it is not solved.
-template <class S, bool kLinear>
+template <class S>
 MW_INLINE void row_now(const Constants& t, const Group& g, const Work& w, const JointPart& part,
-                       const Joint& constants, Row<S, kLinear>& s) {
+                       const Joint& constants, Row<S>& s) {
   const Float zero(Real(0));
   zero.store(s.start_value);
   for (int i = 0; i < 3; ++i) zero.store(s.start_axis[i]);
@@ -19,18 +19,14 @@ MW_INLINE void row_now(const Constants& t, const Group& g, const Work& w, const 
   locate<S, true, false>(w, part, constants, s);
 }
 
-template <class S, bool kLinear>
+template <class S>
 MW_INLINE void observe_coordinate(const Constants& t, const Group& g, const Work& w,
                                   const kernels::JointCoordinate& c, Real* rows) {
-  Row<S, kLinear> s;
+  Row<S> s;
   row_now(t, g, w, c.what, constants_of_part(g, c.part), s);
   const TwoBodies<S> v{velocity_of<S>(t, g, c.what.body_a), velocity_of<S>(t, g, c.what.body_b)};
   Float::load(s.value).store(rows + row_of(Observed::joint_position) * kLanes);
   speed_of(s, v).store(rows + row_of(Observed::joint_speed) * kLanes);
-}
-
-MW_INLINE bool is_linear(PartKind kind) {
-  return kind == PartKind::slide || kind == PartKind::distance || kind == PartKind::pulley;
 }
 
 // Torques of the plane are about z, the last of three rows.
@@ -55,17 +51,11 @@ MW_INLINE void observe_load(const Constants& t, const Group& g, const Work& w, i
     case PartKind::line: return add_to(rows, 0, load_as<Vec>(stored) * inv_h);
     case PartKind::lock:
     case PartKind::swing: return add_torque(rows, load_as<Ang>(stored) * inv_h);
-    case PartKind::angle:
-    case PartKind::twist:
-    case PartKind::cone: {
-      Row<S, false> s;
-      row_now(t, g, w, what, constants_of_part(g, part), s);
-      return add_torque(rows, load_as<Ang>(s.angular_b[0]) * along);
-    }
     default: {
-      Row<S, true> s;
+      Row<S> s;
       row_now(t, g, w, what, constants_of_part(g, part), s);
-      return add_to(rows, 0, load_as<Vec>(s.linear_b[0]) * along);
+      if (is_linear(what.kind)) return add_to(rows, 0, load_as<Vec>(s.linear_b[0]) * along);
+      return add_torque(rows, load_as<Ang>(s.angular_b[0]) * along);
     }
   }
 }
@@ -77,11 +67,7 @@ void observe_joints(const Constants& t, const Group& g, kernels::Scratch* scratc
   for (int i = 0; i < items_of(o, Observer::joints); ++i) {
     const kernels::JointCoordinate& c = o.coordinate[i];
     Real* rows = rows_for(o, Observer::joints) + i * rows_of(Observer::joints) * kLanes;
-    if (is_linear(c.what.kind)) {
-      observe_coordinate<S, true>(t, g, w, c, rows);
-    } else {
-      observe_coordinate<S, false>(t, g, w, c, rows);
-    }
+    observe_coordinate<S>(t, g, w, c, rows);
   }
 }
 

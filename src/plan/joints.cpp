@@ -11,7 +11,7 @@ namespace manyworlds {
 
 namespace {
 
-using kernels::PartKind;
+using kernels::PartKind, kernels::PointHold, kernels::TurnHold;
 using kernels::RowSoftness;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -53,7 +53,23 @@ class Builder {
         h_(plan.substep_dt()) {}
 
   void build() {
+    const std::size_t first = plan_.parts.size();
     std::visit([this](const auto& type) { add(type); }, joint_.type);
+    // What rows along and about its axes are held by.
+    TurnHold turn = TurnHold::free;
+    PointHold point = PointHold::free;
+    for (std::size_t i = first; i < plan_.parts.size(); ++i) {
+      switch (plan_.parts[i].what.kind) {
+        case PartKind::lock: turn = TurnHold::lock; break;
+        case PartKind::swing: turn = TurnHold::swing; break;
+        case PartKind::line: point = PointHold::line; break;
+        case PartKind::point: point = PointHold::point; break;
+        default: break;
+      }
+    }
+    for (std::size_t i = first; i < plan_.parts.size(); ++i) {
+      plan_.parts[i].what.turn_hold = turn, plan_.parts[i].what.point_hold = point;
+    }
   }
 
  private:

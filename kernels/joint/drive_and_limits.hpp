@@ -1,0 +1,109 @@
+// What drives and limits a coordinate x of speed v, as one system:
+//   drive  force = k (target - x) + c (target speed - v), implicit; |impulse| <= max
+//   limit  C = x - low or high - x, impulse >= 0; speculative while C > 0, else soft
+// One after the other, a motor would push through its own limit. A limit that stands against a
+// drive is hard, and a drive that nothing bounds gives way to it, as in trees.
+#pragma once
+
+#include "kernels/joint/held_row.hpp"
+
+namespace manyworlds::MW_KERNEL_NAMESPACE {
+
+// What a drive is to reach, by its controls where it has some.
+struct DriveTarget {
+  Float position, speed;
+};
+MW_INLINE DriveTarget target_of(const Group& g, const JointPart& part, const Joint& constants) {
+  DriveTarget out{constants.target_position, constants.target_speed};
+  if (part.position_control >= 0) {
+    out.position = Float::load(g.control + part.position_control * kLanes);
+  }
+  if (part.speed_control >= 0) out.speed = Float::load(g.control + part.speed_control * kLanes);
+  return out;
+}
+
+// Impulses of a substep so far.
+struct RowImpulses {
+  Float drive, low, high;
+  MW_INLINE Float sum() const { return drive + (low - high); }
+};
+
+inline constexpr Real kFirmMotor = Real(1e-3);  // of K: what a rigid motor gives way to a limit by
+
+// The impulses with which the row ends this pass. `speed`: without any of them.
+template <class S, Pass kPass>
+MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const JointPart& part,
+                                      const Joint& constants, const Row<S>& s, Float speed) {
+  const Float zero(Real(0)), k = Float::load(s.k), most = constants.max_impulse;
+  RowImpulses out{zero, zero, zero};
+  // v + lag + give p = 0 of a drive
+  Float give = zero, lag = zero;
+  if (part.drive) {
+    const DriveTarget target = target_of(g, part, constants);
+    const auto& soft = constants.drive_soft;
+    give = fma(k, soft.rho, Float(soft.gamma));
+    lag = fms(Float::load(s.driven) - target.position, soft.bias_rate,
+              target.speed * Float(constants.speed_share));
+    out.drive = clamp(-((speed + lag) * inverse_or_zero(k + give)), -most, most);
+  }
+  const auto stop = [&](Float sign, Float gap, Float& impulse) {
+    // sign v + error + soft p = 0 of a limit
+    const Mask within = zero < gap;
+    Float error = max(gap, zero) * Float(t.inv_h), soft = zero;
+    if (kPass == Pass::bias) {
+      const auto& by = constants.limit_soft;
+      error = select(within, error, gap * Float(by.bias_rate));
+      const Float of_spring(by.gamma);
+      soft = select(within, zero, part.drive ? of_spring : fma(k, by.rho, of_spring));
+    }
+    const Float reached = fma(k, out.drive, speed) * sign + error;
+    const Mask acts = reached < zero;
+    if (!any(acts)) return;
+    Float drive = out.drive;
+    if (part.drive) {
+      // Both as if the drive had no bound, then the drive within its bounds.
+      const Float firm = max(give, k * Float(kFirmMotor)), sum = k + firm;
+      const Float lack = fma(fnma(k, lag, firm * speed), sign, error * sum);
+      const Float both = max(-(lack * inverse_or_zero(fma(soft, sum, k * firm))), zero);
+      const Float v = (fma(k, both * sign, speed) * firm - k * lag) * inverse_or_zero(sum);
+      drive = clamp(-((v + lag) * inverse_or_zero(firm)), -most, most);
+    }
+    const Float lack = fma(k, drive, speed) * sign + error;
+    impulse = select(acts, max(-(lack * inverse_or_zero(k + soft)), zero), zero);
+    out.drive = select(acts, drive, out.drive);
+  };
+  const Float value = Float::load(s.value);
+  if (part.low) stop(Float(Real(1)), value - Float(constants.low), out.low);
+  if (part.high) stop(Float(Real(-1)), Float(constants.high) - value, out.high);
+  return out;
+}
+
+template <class S, bool kDense, Pass kPass>
+MW_INLINE void solve_row(const Constants& t, const Group& g, const JointPart& part,
+                         const Joint& constants, Row<S>& s, PartVelocities<S, kDense>& v) {
+  const RowImpulses before{Float::load(s.impulse[0]), Float::load(s.impulse[1]),
+                           Float::load(s.impulse[2])};
+  if constexpr (kPass == Pass::warm_start) {
+    apply_row<S, kDense>(s, before.sum(), v);
+    return;
+  }
+  const Float k = Float::load(s.k), value = Float::load(s.value), speed = speed_of(s, v);
+  if constexpr (kPass == Pass::bias) value.store(s.driven);
+  if (part.equality) {
+    Float after = fnma(speed, inverse_or_zero(k), before.drive);
+    if (kPass == Pass::bias) {
+      const Float pull =
+          pull_of(value - Float(constants.rest), constants.soft.bias_rate, constants.pull);
+      after = before.drive + soften_row(constants.soft, k, speed + pull, before.drive);
+    }
+    after.store(s.impulse[0]);
+    apply_row<S, kDense>(s, after - before.drive, v);
+    return;
+  }
+  const RowImpulses after =
+      drive_and_limit<S, kPass>(t, g, part, constants, s, fnma(k, before.sum(), speed));
+  after.drive.store(s.impulse[0]), after.low.store(s.impulse[1]), after.high.store(s.impulse[2]);
+  apply_row<S, kDense>(s, after.sum() - before.sum(), v);
+}
+
+}  // namespace manyworlds::MW_KERNEL_NAMESPACE
