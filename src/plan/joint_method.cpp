@@ -11,6 +11,7 @@
 
 #include "src/plan/joint_trees.hpp"
 #include "src/plan/plan_data.hpp"
+#include "src/plan/stiff_drives.hpp"
 #include "src/plan/substeps.hpp"
 
 namespace manyworlds {
@@ -70,12 +71,22 @@ bool is_long_and_touches(const Scene& scene, const SceneTrees& trees) {
   return false;
 }
 
-// Between two ends the sag of a row follows its length by a root: what sweeps let each joint
-// stretch by shows many times over.
-std::string need_of_rows(const SceneTrees& trees) {
+// Sweeps share a load around a loop only in many passes: between two ends the sag of a row follows
+// its length by a root, so that what each joint stretches by shows many times over, and linkages
+// that fall by much of their size in a step come apart.
+std::string need_of_loops(const Scene& scene, const SceneTrees& trees) {
   constexpr int kMost = 32;
-  for (const int joints : trees.joints_in_loops) {
-    if (joints > kMost) return std::to_string(joints) + " joints are connected in loops";
+  constexpr double kMostFall = 0.09;  // over arms, the sum of all joints; of 33 whose arms are 1 m
+  const double fall = scene.options.gravity.norm() * scene.options.dt * scene.options.dt;
+  for (std::size_t b = 0; b < trees.joints_in_loops.size(); ++b) {
+    const int joints = trees.joints_in_loops[b];
+    const std::string connected = std::to_string(joints) + " joints are connected in loops";
+    if (joints > kMost) return connected;
+    const double share = fall * trees.inverse_arms[b];
+    if (share > kMostFall) {
+      return connected + ", which fall by " + short_text(share / joints) +
+             " of their arms in a step";
+    }
   }
   return {};
 }
@@ -134,11 +145,11 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
       return at_once(joint_text(j) + " can break");
     }
   }
-  if (const std::string why = need_of_rows(trees); !why.empty()) return at_once(why);
   for (const Scene& scene : extremes) {
     for (const std::string& why :
-         {need_of_levers(scene, in_tree), need_of_masses(scene, trees.of_body),
-          need_of_light_links(scene, trees)}) {
+         {need_of_loops(scene, trees), need_of_levers(scene, in_tree),
+          need_of_masses(scene, trees.of_body), need_of_light_links(scene, trees),
+          need_of_drives(scene, trees)}) {
       if (!why.empty()) return at_once(why);
     }
   }

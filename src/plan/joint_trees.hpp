@@ -19,6 +19,7 @@ struct SceneTrees {
   std::vector<int> of_body;          // [body] which tree, by one of its bodies; -1: none
   std::vector<int> joints_with;      // [body] joints of its tree
   std::vector<int> joints_in_loops;  // [body] of those the ones that are part of loops
+  std::vector<double> inverse_arms;  // [body] 1/m, their sum over these
 };
 SceneTrees trees_of(const Scene& scene);
 

@@ -125,6 +125,7 @@ SceneTrees trees_of(const Scene& scene) {
   constexpr int kMostClosures = 4;  // joints that close loops: each costs some solves of the tree
   struct Component {
     int joints = 0, closures = 0, in_loops = 0;
+    double inverse_arms = 0;
     bool fits = true;
     bool is_tree() const { return fits && joints > 0 && closures <= kMostClosures; }
   };
@@ -170,6 +171,7 @@ SceneTrees trees_of(const Scene& scene) {
     if (!at_once || !on_loop[j]) continue;
     ++of[root(joint)].in_loops;
     const StartGap gap = start_gap(scene, joint);
+    of[root(joint)].inverse_arms += gap.arms > 0 ? 1 / gap.arms : 0;
     const double closed = kClosedShare * gap.arms;
     if (gap.length > closed) out.slack.back() = gap.length + closed;
   }
@@ -178,6 +180,7 @@ SceneTrees trees_of(const Scene& scene) {
     out.of_body.push_back(component.is_tree() ? static_cast<int>(together.find(i)) : -1);
     out.joints_with.push_back(component.is_tree() ? component.joints : 0);
     out.joints_in_loops.push_back(component.in_loops);
+    out.inverse_arms.push_back(component.inverse_arms);
   }
   return out;
 }
