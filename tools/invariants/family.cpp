@@ -22,9 +22,9 @@ std::vector<Family> in_both_spaces(const Family& family, const DrawInSpace& draw
 
 std::vector<Family> families() {
   std::vector<Family> out;
-  for (auto& part :
-       {symmetry_families(), momentum_families(), energy_families(), friction_families(),
-        rest_families(), penetration_families(), similarity_families(), independence_families()}) {
+  for (auto& part : {symmetry_families(), momentum_families(), energy_families(),
+                     friction_families(), rest_families(), penetration_families(),
+                     similarity_families(), independence_families(), joint_families()}) {
     out.insert(out.end(), part.begin(), part.end());
   }
   return out;

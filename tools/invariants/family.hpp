@@ -81,7 +81,8 @@ enum class Law {
   rest,
   penetration,
   similarity,
-  independence
+  independence,
+  joints
 };
 const char* to_string(Law law);
 
@@ -117,6 +118,7 @@ std::vector<Family> rest_families();
 std::vector<Family> penetration_families();
 std::vector<Family> similarity_families();  // and refinement
 std::vector<Family> independence_families();
+std::vector<Family> joint_families();
 
 // ---- runs ---------------------------------------------------------------------------------------
 

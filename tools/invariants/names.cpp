@@ -15,6 +15,7 @@ const char* to_string(Law law) {
     case Law::penetration: return "penetration";
     case Law::similarity: return "similarity";
     case Law::independence: return "independence";
+    case Law::joints: return "joints";
   }
   return "";
 }
