@@ -186,7 +186,7 @@ MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s) {
 // pair. The nearer to the anchor of the lighter body, so that what hangs on the world is pulled
 // where it is held, and in the same way whichever body is A.
 template <class S>
-MW_INLINE void meet(const PartBodies<S>& s, MovedAnchors<S>& at) {
+MW_INLINE void use_common_point(const PartBodies<S>& s, MovedAnchors<S>& at) {
   const Float a = Float::load(s.a.inv_mass),
               share = a * inverse_or_zero(a + Float::load(s.b.inv_mass));
   const auto of_b = at.gap * share;

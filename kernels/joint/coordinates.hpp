@@ -143,12 +143,13 @@ MW_INLINE void locate(const Work& w, const JointPart& part, const Joint& constan
 template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& constants, Row<S>& s) {
   locate<S, kDense, kMoved>(w, part, constants, s);
+  if (kMoved && part.direct) return;
   if (!is_held(part)) return weigh_row(s);
   auto other = zero_of<typename S::Vec>();
   if (has_other_axis(part)) other = load_as<typename S::Vec>(s.start_other[0]);
   MovedAnchors<S> now = anchors_now<S, kDense, kMoved>(w, s, other);
   if (part.point_hold == PointHold::point) {
-    meet(s, now);
+    use_common_point(s, now);
   } else {
     now.arm_a = now.arm_a + now.gap;
   }

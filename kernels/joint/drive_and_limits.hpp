@@ -1,8 +1,9 @@
 // What drives and limits a coordinate x of speed v, as one system:
 //   drive  force = k (target - x) + c (target speed - v), implicit; |impulse| <= max
-//   limit  C = x - low or high - x, impulse >= 0; speculative while C > 0, else soft
-// One after the other, a motor would push through its own limit. A limit that stands against a
-// drive is hard, and a drive that nothing bounds gives way to it, as in trees.
+//   limit  C = x - low or high - x, impulse >= 0; speculative while C > 0, else soft in the bias
+//          pass; with a spring as implicit as a drive, and the same in both passes
+// One after the other, a motor would push through its own limit. A rigid limit against a drive is
+// hard, and a rigid motor yields to it, as in trees.
 #pragma once
 
 #include "kernels/joint/held_row.hpp"
@@ -28,7 +29,7 @@ struct RowImpulses {
   MW_INLINE Float sum() const { return drive + (low - high); }
 };
 
-inline constexpr Real kFirmMotor = Real(1e-3);  // of K: what a rigid motor gives way to a limit by
+inline constexpr Real kFirmMotor = Real(1e-3);  // of K: compliance of a rigid motor at a limit
 
 // The impulses with which the row ends this pass. `speed`: without any of them.
 template <class S, Pass kPass>
@@ -50,11 +51,12 @@ MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const 
     // sign v + error + soft p = 0 of a limit
     const Mask within = zero < gap;
     Float error = max(gap, zero) * Float(t.inv_h), soft = zero;
-    if (kPass == Pass::bias) {
+    if (kPass == Pass::bias || part.soft_limit) {
       const auto& by = constants.limit_soft;
       error = select(within, error, gap * Float(by.bias_rate));
       const Float of_spring(by.gamma);
-      soft = select(within, zero, part.drive ? of_spring : fma(k, by.rho, of_spring));
+      const bool hard = part.drive && !part.soft_limit;
+      soft = select(within, zero, hard ? of_spring : fma(k, by.rho, of_spring));
     }
     const Float reached = fma(k, out.drive, speed) * sign + error;
     const Mask acts = reached < zero;
@@ -72,7 +74,7 @@ MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const 
     impulse = select(acts, max(-(lack * inverse_or_zero(k + soft)), zero), zero);
     out.drive = select(acts, drive, out.drive);
   };
-  const Float value = Float::load(s.value);
+  const Float value = Float::load(part.soft_limit ? s.driven : s.value);
   if (part.low) stop(Float(Real(1)), value - Float(constants.low), out.low);
   if (part.high) stop(Float(Real(-1)), Float(constants.high) - value, out.high);
   return out;

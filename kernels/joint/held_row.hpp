@@ -19,14 +19,12 @@ namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 using kernels::PointHold, kernels::TurnHold;
 
-inline constexpr Real kLeastHeld = sizeof(Real) == 4 ? Real(1e-6) : Real(1e-13);  // of K unheld
+// In space what is left of S and K is a difference: by 1 + m r^2 / I, r the arm, less than there
+// was, and wrong by as much times the rounding. Where no digit is left the row knows of nothing
+// else.
+inline constexpr Real kHeldRounding = sizeof(Real) == 4 ? Real(1e-6) : Real(2e-15);
 
 // The inverse over directions across a unit vector.
-MW_INLINE Sym2 inverse_across(const Sym2& k, Vec2 axis) {
-  const Vec2 d{-axis.y, axis.x};
-  const Float by = inverse_or_zero(dot(d, mul(k, d)));
-  return {d.x * d.x * by, d.x * d.y * by, d.y * d.y * by};
-}
 MW_INLINE Sym3 inverse_across(const Sym3& k, Vec3 axis) {
   const Sym3 by = inverse(k);
   const Vec3 r = mul(by, axis);
@@ -35,11 +33,6 @@ MW_INLINE Sym3 inverse_across(const Sym3& k, Vec3 axis) {
   return {by.xx - r.x * s.x, by.xy - r.x * s.y, by.xz - r.x * s.z,
           by.yy - r.y * s.y, by.yz - r.y * s.z, by.zz - r.z * s.z};
 }
-template <class Sym, class V>
-MW_INLINE Sym held_inverse(PointHold hold, const Sym& k, V axis) {
-  return hold == PointHold::line ? inverse_across(k, axis) : inverse(k);
-}
-
 // What a unit impulse of the row does, and its K.
 template <class S>
 struct HeldRow {
@@ -48,41 +41,89 @@ struct HeldRow {
   Float k;
 };
 
-// How relative rotation and velocity of the anchors answer moments and forces.
-struct PlanarAnswers {
-  Float turn;  // S
-  Vec2 cross;  // D
-  Sym2 point;  // K
+// In the plane by sums of what is positive: long arms leave nothing of the differences. With m the
+// sum of inverse masses, a and b inverse moments of inertia, and r the arms,
+//   det K = m (m + a ra^2 + b rb^2 + a b (ra x rb)^2 / m)
+class PlanarPair {
+ public:
+  MW_INLINE PlanarPair(const Row<Planar>& s, Vec2 arm_a, Vec2 arm_b)
+      : a_(inertia_of(s.a)),
+        b_(inertia_of(s.b)),
+        mass_(Float::load(s.a.inv_mass) + Float::load(s.b.inv_mass)),
+        by_mass_(inverse_or_zero(mass_)),
+        arm_a_(arm_a),
+        arm_b_(arm_b),
+        apart_(arm_b - arm_a),
+        point_{Float(Real(0)), Float(Real(0)), Float(Real(0))} {
+    add_point_mass(s.a, arm_a, point_), add_point_mass(s.b, arm_b, point_);
+  }
+  // About a point.
+  MW_INLINE HeldRow<Planar> turn() const {
+    const Float by = inverse_or_zero(determinant());
+    const Float k = fma(mass_, a_ + b_, a_ * b_ * dot(apart_, apart_));
+    return {adjugate(turned()) * -(by * by_mass_), Float(Real(1)), k * by};
+  }
+  // About a point that slides along a unit vector.
+  MW_INLINE HeldRow<Planar> turn_beside(Vec2 axis) const {
+    const Vec2 d{-axis.y, axis.x};
+    const Float u = cross(arm_a_, d), w = cross(arm_b_, d), across = u - w;
+    const Float by = inverse_or_zero(across_mass(d));
+    const Float k = fma(mass_, a_ + b_, a_ * b_ * (across * across));
+    return {d * -(fma(b_, w, a_ * u) * by), Float(Real(1)), k * by};
+  }
+  // Along a unit vector, if the rotation is locked, or free.
+  MW_INLINE HeldRow<Planar> slide_locked(Vec2 axis) const {
+    const Float sum = inverse_or_zero(a_ + b_), c = a_ * b_ * sum;
+    const Vec2 q = cross(Float(Real(1)), apart_);
+    const Float along = dot(q, axis), across = cross(q, axis), all = fma(c, dot(q, q), mass_);
+    const Float by = inverse_or_zero(fma(c, across * across, mass_));
+    const Vec2 force = fnma(q, c * along, axis * all) * by;
+    return {force, -(dot(turned(), force) * sum), mass_ * all * by};
+  }
+  MW_INLINE HeldRow<Planar> slide(Vec2 axis) const {
+    const Float by = inverse_or_zero(across_mass({-axis.y, axis.x}));
+    return {adjugate(axis) * by, Float(Real(0)), mass_ * determinant() * by};
+  }
+
+ private:
+  MW_INLINE Float determinant() const {  // over m
+    const Float x = cross(arm_a_, arm_b_);
+    const Float arms = fma(b_, dot(arm_b_, arm_b_), a_ * dot(arm_a_, arm_a_));
+    return fma(a_ * x, b_ * x * by_mass_, mass_ + arms);
+  }
+  MW_INLINE Vec2 turned() const {  // D
+    return cross(Float(Real(1)), fma(arm_b_, b_, arm_a_ * a_));
+  }
+  MW_INLINE Float across_mass(Vec2 d) const {
+    const Float u = cross(arm_a_, d), w = cross(arm_b_, d);
+    return fma(b_, w * w, fma(a_, u * u, mass_));
+  }
+  // K^-1 v, times its determinant.
+  MW_INLINE Vec2 adjugate(Vec2 v) const {
+    return {fms(point_.yy, v.x, point_.xy * v.y), fms(point_.xx, v.y, point_.xy * v.x)};
+  }
+
+  Float a_, b_, mass_, by_mass_;
+  Vec2 arm_a_, arm_b_, apart_;
+  Sym2 point_;  // K
 };
-MW_INLINE PlanarAnswers answers_of(const Row<Planar>& s, Vec2 arm_a, Vec2 arm_b) {
-  const Float a = inertia_of(s.a), b = inertia_of(s.b), zero(Real(0));
-  PlanarAnswers out{a + b, cross(b, arm_b) + cross(a, arm_a), {zero, zero, zero}};
-  add_point_mass(s.a, arm_a, out.point), add_point_mass(s.b, arm_b, out.point);
-  return out;
-}
 MW_INLINE HeldRow<Planar> hold_turn(const JointPart& part, const Row<Planar>& s, Vec2 arm_a,
                                     Vec2 arm_b, Float, Vec2 other) {
-  const PlanarAnswers of = answers_of(s, arm_a, arm_b);
-  const Vec2 force = -mul(held_inverse(part.point_hold, of.point, other), of.cross);
-  const Float k = max(of.turn + dot(of.cross, force), of.turn * Float(kLeastHeld));
-  return {force, Float(Real(1)), k};
+  const PlanarPair pair(s, arm_a, arm_b);
+  return part.point_hold == PointHold::line ? pair.turn_beside(other) : pair.turn();
 }
 MW_INLINE HeldRow<Planar> hold_slide(const JointPart& part, const Row<Planar>& s, Vec2 arm_a,
                                      Vec2 arm_b, Vec2 axis, Vec2) {
-  const PlanarAnswers of = answers_of(s, arm_a, arm_b);
-  const Float by = part.turn_hold == TurnHold::lock ? inverse_or_zero(of.turn) : Float(Real(0));
-  const Vec2 d = of.cross, e = d * by;
-  const Sym2 h{of.point.xx - d.x * e.x, of.point.xy - d.x * e.y, of.point.yy - d.y * e.y};
-  const Vec2 x = mul(inverse(h), axis);
-  const Float k = inverse_or_zero(dot(axis, x));
-  const Vec2 force = x * k;
-  return {force, -(by * dot(d, force)), k};
+  const PlanarPair pair(s, arm_a, arm_b);
+  return part.turn_hold == TurnHold::lock ? pair.slide_locked(axis) : pair.slide(axis);
 }
 
+// How relative rotation and velocity of the anchors answer moments and forces.
 struct SpatialAnswers {
   Sym3 turn;
   Mat3 cross;
   Sym3 point;
+  Float rounding;  // of what is left of them, as a share
 };
 MW_INLINE SpatialAnswers answers_of(const Row<Tensor>& s, Vec3 arm_a, Vec3 arm_b) {
   const Sym3 a = inertia_of(s.a), b = inertia_of(s.b);
@@ -92,8 +133,12 @@ MW_INLINE SpatialAnswers answers_of(const Row<Tensor>& s, Vec3 arm_a, Vec3 arm_b
                      {column({a.xx, a.xy, a.xz}, {b.xx, b.xy, b.xz}),
                       column({a.xy, a.yy, a.yz}, {b.xy, b.yy, b.yz}),
                       column({a.xz, a.yz, a.zz}, {b.xz, b.yz, b.zz})},
-                     {zero, zero, zero, zero, zero, zero}};
+                     {zero, zero, zero, zero, zero, zero},
+                     zero};
   add_point_mass(s.a, arm_a, out.point), add_point_mass(s.b, arm_b, out.point);
+  const Float mass = Float::load(s.a.inv_mass) + Float::load(s.b.inv_mass);
+  const Float trace = out.point.xx + (out.point.yy + out.point.zz);
+  out.rounding = trace * inverse_or_zero(mass) * Float(kHeldRounding);
   return out;
 }
 // a - m' by m
@@ -108,15 +153,21 @@ MW_INLINE Mat3 transposed(const Mat3& m) {
 MW_INLINE HeldRow<Tensor> hold_turn(const JointPart& part, const Row<Tensor>& s, Vec3 arm_a,
                                     Vec3 arm_b, Vec3 axis, Vec3 other) {
   const SpatialAnswers of = answers_of(s, arm_a, arm_b);
-  const Sym3 by = held_inverse(part.point_hold, of.point, other);
+  const Sym3 by =
+      part.point_hold == PointHold::line ? inverse_across(of.point, other) : inverse(of.point);
   Vec3 moment = axis;
+  Mask sound = Float(Real(-1)) < Float(Real(0));
   if (part.turn_hold == TurnHold::swing) {
     const Vec3 x = mul(inverse(reduced(of.turn, of.cross, by)), axis);
-    moment = x * inverse_or_zero(dot(axis, x));
+    sound = Float(Real(0)) < dot(axis, x);
+    moment = select(sound, x * inverse_or_zero(dot(axis, x)), axis);
   }
   const Vec3 moved = mul(of.cross, moment), force = -mul(by, moved);
-  const Float free = dot(moment, mul(of.turn, moment));
-  return {force, moment, max(free + dot(moved, force), free * Float(kLeastHeld))};
+  const Float free = dot(axis, mul(of.turn, axis));
+  const Float k = dot(moment, mul(of.turn, moment)) + dot(moved, force);
+  sound = sound & (free * of.rounding < k);
+  return {select(sound, force, zero_of<Vec3>()), select(sound, moment, axis),
+          select(sound, k, free)};
 }
 MW_INLINE HeldRow<Tensor> hold_slide(const JointPart& part, const Row<Tensor>& s, Vec3 arm_a,
                                      Vec3 arm_b, Vec3 axis, Vec3 other) {
@@ -124,17 +175,20 @@ MW_INLINE HeldRow<Tensor> hold_slide(const JointPart& part, const Row<Tensor>& s
   const Sym3 by =
       part.turn_hold == TurnHold::swing ? inverse_across(of.turn, other) : inverse(of.turn);
   const Vec3 x = mul(inverse(reduced(of.point, transposed(of.cross), by)), axis);
-  const Float k = inverse_or_zero(dot(axis, x));
-  const Vec3 force = x * k;
-  return {force, -mul(by, mul_transposed(of.cross, force)), k};
+  const Float held = inverse_or_zero(dot(axis, x)), free = dot(axis, mul(of.point, axis));
+  const Mask sound = free * of.rounding < held;
+  const Vec3 force = select(sound, x * held, axis);
+  const Vec3 moment = select(sound, -mul(by, mul_transposed(of.cross, force)), zero_of<Vec3>());
+  return {force, moment, select(sound, held, free)};
 }
 
 MW_INLINE bool is_held(const JointPart& part) {
-  return !part.direct && (part.point_hold != PointHold::free || part.turn_hold != TurnHold::free);
+  return part.point_hold != PointHold::free || part.turn_hold != TurnHold::free;
 }
 
-// After locate. Both arms reach the point at which the other parts act; `other`: Row::start_other
-// now.
+// After locate. In trees the other parts are solved with the row: it keeps its own Jacobian, and K
+// is what a frequency is meant of. Both arms reach the point at which the other parts act; `other`:
+// Row::start_other now.
 template <class S>
 MW_INLINE void hold_row(const JointPart& part, typename S::Vec arm_a, typename S::Vec arm_b,
                         typename S::Vec other, Row<S>& s) {
@@ -145,13 +199,14 @@ MW_INLINE void hold_row(const JointPart& part, typename S::Vec arm_a, typename S
   const HeldRow<S> held = part.kind == PartKind::slide
                               ? hold_slide(part, s, arm_a, arm_b, force, other)
                               : hold_turn(part, s, arm_a, arm_b, moment, other);
+  held.k.store(s.k);
+  if (part.direct) return;
   store(s.linear_a[0], held.force), store(s.linear_b[0], held.force);
   store(s.angular_a[0], held.moment + cross(arm_a, held.force));
   store(s.angular_b[0], held.moment + cross(arm_b, held.force));
   store(s.moment[0], held.moment);
   store(s.reaction_force[0], held.force - force);
   store(s.reaction_moment[0], held.moment - moment);
-  held.k.store(s.k);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -74,10 +74,10 @@ struct JointPasses {
   // The state has what each part of a joint does; while they are solved, what a held row makes the
   // other parts do belongs to the row. Adds that to them, `sign` times.
   template <class Rows>
-  static void share_reactions(const Constants&, Work&, const JointPart&, int, const Rows&, Real) {}
-  static void share_reactions(const Constants& t, Work& w, const JointPart& part, int index,
-                              const Row<S>& s, Real sign) {
-    if (!is_held(part)) return;
+  static void share_reaction(const Constants&, Work&, const JointPart&, int, const Rows&, Real) {}
+  static void share_reaction(const Constants& t, Work& w, const JointPart& part, int index,
+                             const Row<S>& s, Real sign) {
+    if (part.direct || !is_held(part)) return;
     const Float p = along_row(s) * Float(sign);
     const auto add = [p](Real* to, auto change) {
       store(to, load_as<decltype(change)>(to) + change * p);
@@ -99,6 +99,12 @@ struct JointPasses {
     }
   }
 
+  static void share_reactions(const Constants& t, Work& w, Real sign) {
+    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
+      share_reaction(t, w, part, i, s, sign);
+    });
+  }
+
   // Rows at the start of the step, with the impulses of the last one.
   static void prepare_parts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
@@ -108,9 +114,7 @@ struct JointPasses {
       prepare(t, g, part, constants, s);
       refresh<S, kDense, false>(w, part, constants, s);
     });
-    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
-      share_reactions(t, w, part, i, s, Real(-1));
-    });
+    share_reactions(t, w, Real(-1));
   }
 
   template <Pass kPass>
@@ -163,9 +167,7 @@ struct JointPasses {
 
   static void keep(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
-      share_reactions(t, w, part, i, s, Real(1));
-    });
+    share_reactions(t, w, Real(1));
     for_each_part<S>(t, w, [&](auto& s, const JointPart&, int i) {
       const Mask lanes = mask_from_bits(s.mask & ~w.frozen);
       Real* to = g.joint_impulse + i * kernels::kPartImpulses * kLanes;
@@ -204,6 +206,7 @@ struct JointPasses {
     Work& w = work_of(scratch);
     rotate_body_rows(t, g, w, false);
     prepare_parts(t, g, scratch);
+    share_reactions(t, w, Real(1));
     const Float zero(Real(0));
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0 || part.force) return;

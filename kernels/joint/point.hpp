@@ -49,8 +49,8 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& constants,
                        PointRows<S>& s) {
   auto now = anchors_now<S, kDense, kMoved>(w, s);
-  // Not in trees: their contacts count on what these have had, whose energy that would raise.
-  if (!part.direct) meet(s, now);
+  // A target may be far away for ever. In trees ropes with contacts gain energy by it.
+  if (!part.direct && !part.spring) use_common_point(s, now);
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   if (kMoved && part.direct) return;
   typename PointMass<S>::Type k{};

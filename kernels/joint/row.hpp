@@ -20,7 +20,7 @@ struct alignas(64) Row : AnchoredRows<S> {
   Real linear_a[S::kDim][kLanes], linear_b[S::kDim][kLanes];
   Real angular_a[S::kAng][kLanes], angular_b[S::kAng][kLanes];
   Real moment[S::kAng][kLanes];  // what a unit impulse gives B beside the force at its anchor
-  // What of those the parts do that hold the bodies (held_row.hpp).
+  // Its share that the joint's other parts apply (held_row.hpp).
   Real reaction_force[S::kDim][kLanes], reaction_moment[S::kAng][kLanes];
   Real value[kLanes];
   Real driven[kLanes];  // the value of the bias pass
