@@ -1,6 +1,7 @@
 // Joints that can be solved at once. Used inside src/plan only.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "manyworlds/scene.hpp"
@@ -27,5 +28,7 @@ SceneTrees trees_of(const Scene& scene);
 // does not close a loop.
 bool has_bounds(const Joint& joint);
 bool may_break(const Joint& joint);
+
+inline std::string joint_text(std::size_t j) { return "joint " + std::to_string(j); }
 
 }  // namespace manyworlds

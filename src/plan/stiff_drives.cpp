@@ -7,6 +7,7 @@
 
 #include "src/plan/plan_data.hpp"
 #include "src/plan/substeps.hpp"
+#include "src/scene/joint_numbers.hpp"
 
 namespace manyworlds {
 
@@ -26,29 +27,26 @@ double inertia_of(const Scene& scene, BodyId id, const Frame& frame, bool turns)
   return axis.dot(of.inertia * axis) + of.mass * axis.cross(arm).squaredNorm();
 }
 
-struct Driven {
-  const Drive* drive = nullptr;
-  bool turns = false;
-};
-Driven driven_by(const Joint& joint) {
-  if (const auto* hinge = std::get_if<HingeJoint>(&joint.type)) {
-    return {hinge->drive ? &*hinge->drive : nullptr, true};
+// m/s or rad/s: the fastest that a motor may be asked for.
+double fastest_of(const Scene& scene, JointId joint, const Drive& motor) {
+  double out = std::abs(motor.target_speed);
+  for (const Control& control : scene.controls) {
+    if (control.kind != ControlKind::target_speed || control.joint != joint) continue;
+    out = std::max({out, std::abs(control.low), std::abs(control.high)});
   }
-  if (const auto* slider = std::get_if<SliderJoint>(&joint.type)) {
-    return {slider->drive ? &*slider->drive : nullptr, false};
-  }
-  return {};
+  return out;
 }
 
 // What the drive adds to the inertia of its coordinate in a substep of h, over that inertia; of a
 // motor, how much more it can do than reach its speed.
-double stiffness_of(const Scene& scene, const Joint& joint, const Driven& driven, double h) {
-  const Drive& drive = *driven.drive;
-  const double inertia = std::min(inertia_of(scene, joint.body_a, joint.frame_a, driven.turns),
-                                  inertia_of(scene, joint.body_b, joint.frame_b, driven.turns));
+double stiffness_of(const Scene& scene, JointId id, const Drive& drive, double h) {
+  const Joint& joint = scene.at(id);
+  const bool turns = !std::holds_alternative<SliderJoint>(joint.type);
+  const double inertia = std::min(inertia_of(scene, joint.body_a, joint.frame_a, turns),
+                                  inertia_of(scene, joint.body_b, joint.frame_b, turns));
   if (!drive.spring) {
     if (std::isinf(drive.max_force)) return drive.max_force;
-    const double needed = inertia * std::abs(drive.target_speed);
+    const double needed = inertia * fastest_of(scene, id, drive);
     return needed > 0 ? h * drive.max_force / needed : 0;
   }
   if (drive.spring->frequency > 0) {
@@ -65,19 +63,19 @@ std::string need_of_drives(const Scene& scene, const SceneTrees& trees) {
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
     if (!trees.has_joint[j]) continue;
     const Joint& joint = scene.joints[j];
-    const Driven driven = driven_by(joint);
-    if (!driven.drive) continue;
+    const Drive* drive = drive_of(joint.type);
+    // Wheels are light beside what they carry, and free to slide along x.
+    if (drive == nullptr || std::holds_alternative<WheelJoint>(joint.type)) continue;
     const bool a_moves = joint.body_a && scene.at(joint.body_a).motion == Motion::dynamic;
     const BodyId moving = a_moves ? joint.body_a : joint.body_b;
     if (trees.joints_with[static_cast<std::size_t>(moving.index())] < 2) continue;
-    const double stiffness = stiffness_of(scene, joint, driven, h);
+    const double stiffness = stiffness_of(scene, JointId(static_cast<int>(j)), *drive, h);
     if (stiffness <= kMost) continue;
-    const std::string name = "joint " + std::to_string(j);
-    if (driven.drive->spring) {
-      return name + " has a drive that is " + short_text(stiffness) +
+    if (drive->spring) {
+      return joint_text(j) + " has a drive that is " + short_text(stiffness) +
              " times as stiff in a substep as the inertia it moves";
     }
-    return name + " has a motor that reaches its speed in a substep";
+    return joint_text(j) + " has a motor that reaches its speed in a substep";
   }
   return {};
 }

@@ -2,20 +2,10 @@
 #include <cmath>
 
 #include "src/scene/checks.hpp"
+#include "src/scene/joint_numbers.hpp"
 
 namespace manyworlds::detail {
 namespace {
-
-const Drive* drive_of(const JointType& type) {
-  const auto find = [](const auto& joint) -> const Drive* {
-    if constexpr (requires { joint.drive; }) {
-      return joint.drive ? &*joint.drive : nullptr;
-    } else {
-      return nullptr;
-    }
-  };
-  return std::visit(find, type);
-}
 
 std::string index_text(int index, std::size_t count, const char* what) {
   std::string text = "is " + std::to_string(index) + ", must be a " + what;

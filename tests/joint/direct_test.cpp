@@ -283,11 +283,14 @@ TEST_CASE("a joint that is disabled lets its branch of the tree fall", "[joint][
 }
 
 TEST_CASE("the plan solves joints at once where that is worth it, and says why", "[joint][fast]") {
-  const auto method = [](Scene scene) {
+  std::string why;  // of the last one
+  const auto method = [&why](Scene scene) {
     scene.options.joint.method = std::nullopt;
     const Plan plan = compile(scene);
     for (const PlanReport::Choice& choice : plan.report().choices) {
-      if (choice.option == "joint.method") CHECK(choice.why.find("solved at once") == 0);
+      if (choice.option != "joint.method") continue;
+      why = choice.why;
+      CHECK(why.find("solved at once") == 0);
     }
     return plan.resolved().joint.method;
   };
@@ -311,9 +314,25 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     Scene tail = row;  // many joints, of which five make a loop
     tail.add(joint_at(tail, {}, BodyId(3), at(Vec3(2, 0, 0), hinge_axes(space)), HingeJoint{}));
     CHECK_FALSE(method(tail).has_value());
-    Scene small = tail;  // they fall by much of their size in a step
-    small.options.gravity = 1000 * -up_of(space);
+    Scene small = row;  // six in a loop, of which each falls by much of its size in a step
+    small.bodies.resize(5), small.joints.resize(5);
+    small.add(joint_at(small, {}, BodyId(4), at(Vec3(2.5, 0, 0), hinge_axes(space)), HingeJoint{}));
+    CHECK_FALSE(method(small).has_value());
+    small.options.gravity = 100 * -up_of(space);
     CHECK(method(small) == JointMethod::tree);
+    CHECK(why.find("6 joints are connected in loops, which fall by") != std::string::npos);
+    Scene arm = row;  // motors of 1 N m, which a control may ask for little
+    arm.bodies.resize(3), arm.joints.resize(3);
+    for (Joint& joint : arm.joints) {
+      std::get<HingeJoint>(joint.type).drive = Drive{.target_speed = 100, .max_force = 1};
+    }
+    CHECK_FALSE(method(arm).has_value());
+    std::get<HingeJoint>(arm.joints[1].type).drive->max_force = 1e4;
+    CHECK(method(arm) == JointMethod::tree);
+    std::get<HingeJoint>(arm.joints[1].type).drive->target_speed = 0;
+    CHECK_FALSE(method(arm).has_value());
+    arm.add(Control{.joint = JointId(1), .low = -100, .high = 0});
+    CHECK(method(arm) == JointMethod::tree);
     row.add(joint_at(row, {}, BodyId(32), end, HingeJoint{}));
     CHECK(method(row) == JointMethod::tree);
     Scene many = loop;
