@@ -36,9 +36,15 @@ Judge isolated_judge(const Scene& scene, const Allowed& allowed) {
   return [masses = masses_of(scene), allowed, start = Momenta()](const Seen& seen) mutable {
     const Momenta now = momenta_of(masses, seen.now);
     if (seen.step == 0) start = now;
-    return std::max({(now.linear - start.linear).norm() / (allowed.linear * start.linear_sum),
-                     (now.angular - start.angular).norm() / (allowed.angular * start.angular_sum),
-                     std::abs(now.kinetic - start.kinetic) / (allowed.energy * start.kinetic)});
+    double most = 0;
+    for (const double share :
+         {(now.linear - start.linear).norm() / (allowed.linear * start.linear_sum),
+          (now.angular - start.angular).norm() / (allowed.angular * start.angular_sum),
+          std::abs(now.kinetic - start.kinetic) / (allowed.energy * start.kinetic)}) {
+      if (!std::isfinite(share)) return HUGE_VAL;
+      most = std::max(most, share);
+    }
+    return most;
   };
 }
 
@@ -56,7 +62,19 @@ Drawn isolated(Space space, Random& kind, Random& state, const Scale& scale, dou
 
 // ---- joints that carry loads --------------------------------------------------------------------
 
-// How far the frames of a joint are apart where it holds them, over the size of the smaller body.
+// rad: by how much the frames of a joint are rotated against each other where it holds them.
+double lean_of(const Joint& joint, const JointFrames& at) {
+  if (std::holds_alternative<HingeJoint>(joint.type)) {
+    const Vec3 z_a = at.turn_a * Vec3::UnitZ(), z_b = at.turn_b * Vec3::UnitZ();
+    return std::atan2(z_a.cross(z_b).norm(), z_a.dot(z_b));
+  }
+  const bool locked = std::holds_alternative<FixedJoint>(joint.type) ||
+                      std::holds_alternative<SliderJoint>(joint.type);
+  return locked ? at.turn_a.angularDistance(at.turn_b) : 0;
+}
+
+// How far the frames of a joint are apart where it holds them, over the size of the smaller body,
+// or by how many radians.
 Judge closed_judge(const Scene& scene) {
   return [scene, before = initial_states(scene)](const Seen& seen) {
     double most = 0;
@@ -76,7 +94,7 @@ Judge closed_judge(const Scene& scene) {
       for (const BodyId body : {joint.body_a, joint.body_b}) {
         if (body) size = std::min(size, 2 * outer_radius(scene.at(body).shapes[0].geometry));
       }
-      most = std::max(most, open / size);
+      most = std::max({most, open / size, lean_of(joint, at)});
     }
     return most;
   };
@@ -181,8 +199,9 @@ std::vector<Family> joint_families() {
   add_isolated("free joints to 1e4", "the same with masses up to 1e4 apart", 0.01, kMostSpin, 0.01,
                1e4, false);
   const auto add_hung = [&](const char* id, const char* title, double ratio, bool required) {
-    add(id, title, "distance of a joint's frames over the size of the smaller body", 0.01, required,
-        [=](Space space, Random& kind, Random& state, const Scale& scale) {
+    add(id, title,
+        "distance of a joint's frames over the size of the smaller body, or rotation in rad", 0.01,
+        required, [=](Space space, Random& kind, Random& state, const Scale& scale) {
           return hung(space, kind, state, scale, ratio);
         });
   };
