@@ -321,7 +321,7 @@ TEST_CASE("the plan solves joints at once where that is worth it, and says why",
     small.options.gravity = 100 * -up_of(space);
     CHECK(method(small) == JointMethod::tree);
     CHECK(why.find("6 joints are connected in loops, which fall by") != std::string::npos);
-    Scene arm = row;  // motors of 1 N m, which a control may ask for little
+    Scene arm = row;  // its motors count with the fastest speed that a control may set
     arm.bodies.resize(3), arm.joints.resize(3);
     for (Joint& joint : arm.joints) {
       std::get<HingeJoint>(joint.type).drive = Drive{.target_speed = 100, .max_force = 1};

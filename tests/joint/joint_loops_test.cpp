@@ -115,7 +115,6 @@ TEST_CASE("driven linkages of any size stay closed", "[fast][joint]") {
       bar.rotation = rotation_to(Vec3::UnitX(), along);
       const BodyId id = scene.add(bar);
       HingeJoint hinge;
-      // Too weak to ask for trees by itself.
       const double weight = 9.81 * size * size;
       if (i == 0) hinge.drive = Drive{.target_speed = speed, .max_force = 20 * weight * size};
       scene.add(joint_at(scene, last, id, at(pin[i]), hinge));
@@ -124,6 +123,10 @@ TEST_CASE("driven linkages of any size stay closed", "[fast][joint]") {
     scene.add(joint_at(scene, {}, last, at(pin[3]), HingeJoint{}));
     const Plan plan = compile(scene);
     if (size < 0.1) CHECK(plan.resolved().joint.method == JointMethod::tree);
+    for (const PlanReport::Choice& choice : plan.report().choices) {
+      if (choice.option != "joint.method" || size > 0.1) continue;
+      CHECK(choice.why.find("4 joints are connected in loops, which fall by") != std::string::npos);
+    }
     for (const Table& table : widest_tables()) {
       Batch batch(plan, options_of(table));
       double gap = 0;
