@@ -27,7 +27,7 @@ double inertia_of(const Scene& scene, BodyId id, const Frame& frame, bool turns)
   return axis.dot(of.inertia * axis) + of.mass * axis.cross(arm).squaredNorm();
 }
 
-// m/s or rad/s: the fastest that a motor may be asked for.
+// m/s or rad/s: the fastest target of a motor, by its controls, too.
 double fastest_of(const Scene& scene, JointId joint, const Drive& motor) {
   double out = std::abs(motor.target_speed);
   for (const Control& control : scene.controls) {

@@ -56,9 +56,8 @@ Need need_of_loads(const Scene& scene, double length_unit, const std::vector<boo
     const BodyId lighter = lighter_body(scene, scene.joints[j]);
     const double ratio = carried[j] / mass_properties(scene, scene.at(lighter)).mass;
     const double w2 = 2 * ratio * scene.options.gravity.norm() / (kGap * length_unit);
-    at_least(
-        out, substeps_of(std::sqrt(w2), scene.options.dt),
-        "joint " + std::to_string(j) + " carries " + short_text(ratio) + " times its lighter body");
+    at_least(out, substeps_of(std::sqrt(w2), scene.options.dt),
+             joint_text(j) + " carries " + short_text(ratio) + " times its lighter body");
   }
   return out;
 }
