@@ -49,7 +49,7 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& constants,
                        PointRows<S>& s) {
   auto now = anchors_now<S, kDense, kMoved>(w, s);
-  // A target may be far away for ever. In trees ropes with contacts gain energy by it.
+  // Targets stay apart, and trees, in which folded ropes gained energy so, use own anchors.
   if (!part.direct && !part.spring) use_common_point(s, now);
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   if (kMoved && part.direct) return;

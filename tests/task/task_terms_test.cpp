@@ -220,7 +220,7 @@ TEST_CASE("joints, touch, rays, controls and age are what observers see", "[task
       batch.read_controls(control);
       REQUIRE(o[0] == static_cast<float>(joint[0]));
       REQUIRE(o[1] == static_cast<float>(speed[0]));
-      // `touching()` reports the last step, the environment of the world that a reset has begun.
+      // After a reset, `touching()` still reports the step before it; the environment does not.
       if (o[6] != 0) REQUIRE((o[2] != 0) == batch.touching(w, leg));
       REQUIRE(o[3] == static_cast<float>(batch.ray_hits(w)[0].distance));
       REQUIRE((o[8] != 0) == lost(batch.status(w)));
