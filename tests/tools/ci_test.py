@@ -23,7 +23,9 @@ run_stages "${{@:-other good tests}}"
 """
 JUNIT = """<testsuite><testcase name="slow" classname="slow" time="7.5" status="run"/>
 <testcase name="python" classname="python" time="99" status="run"/>
-<testcase name="broken" classname="broken" time="0.5" status="fail"><failure message=""/></testcase>
+<testcase name="broken" classname="broken" time="0.5" status="fail"><failure message=""/><system-out>first
+expected 1, was 2
+</system-out></testcase>
 <testcase name="test_a" classname="python.tests.test_x" time="1.25"/></testsuite>"""
 
 
@@ -96,9 +98,10 @@ class Stages(unittest.TestCase):
         self.assertEqual(lines[first + 1].split(), ["7.5", "8", "tests", "slow"])
         self.assertEqual(lines[first + 2].split(), ["1.2", "9", "tests", "python.tests.test_x::test_a"])
 
-    def test_failed_tests_of_a_failed_stage_are_named(self):
+    def test_failed_tests_of_a_failed_stage_are_named_with_what_they_printed(self):
         self.write('cp tests.xml "$report/other.xml"; false')
-        self.assertIn("failed in other: broken\n", self.run_stages().stdout)
+        told = "failed in other: broken\n    first\n    expected 1, was 2\n"
+        self.assertIn(told, self.run_stages().stdout)
 
     def test_times_go_to_phases(self):
         folder = self.root / "times"

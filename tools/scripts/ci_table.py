@@ -24,7 +24,7 @@ def rows(path):
 
 
 class Stage:
-    """A stage of .ci/run: its times by phase in s, and its tests as (seconds, name, failed)."""
+    """A stage of .ci/run: its times by phase in s, and its tests as (seconds, name, failed, output)."""
 
     def __init__(self, folder, name, status, start, end):
         self.name, self.status = name, int(status)
@@ -54,8 +54,14 @@ def cases(file):
             continue
         if case.get("classname", name) != name:
             name = f"{case.get('classname')}::{name}"
-        found.append((float(case.get("time") or 0), name, failed))
+        found.append((float(case.get("time") or 0), name, failed, output_of(case) if failed else ""))
     return found
+
+
+def output_of(case):
+    """What a test printed, and why it failed: ctest and pytest have both in different places."""
+    parts = [case.find(tag) for tag in ("system-out", "system-err", "failure", "error")]
+    return "\n".join(part.text.strip("\n") for part in parts if part is not None and part.text)
 
 
 def print_stages(stages):
@@ -69,7 +75,7 @@ def print_stages(stages):
 
 
 def print_slowest(stages, count):
-    tests = [(seconds, stage.name, name) for stage in stages for seconds, name, _ in stage.tests]
+    tests = [(seconds, stage.name, name) for stage in stages for seconds, name, *_ in stage.tests]
     tests.sort(reverse=True)
     total = sum(seconds for seconds, *_ in tests)
     if not tests:
@@ -85,15 +91,18 @@ def main():
     parser = argparse.ArgumentParser(description="where the time of .ci/run went")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--count", type=int, default=40, help="how many tests to list")
+    parser.add_argument("--lines", type=int, default=40, help="how much of what a failed test printed")
     options = parser.parse_args()
     stages = [Stage(options.folder, *row) for row in rows(options.folder / "stages")]
     print_slowest(stages, options.count)
     print_stages(stages)
     failed = [stage for stage in stages if stage.status != 0]
     for stage in failed:
-        for _, name, bad in stage.tests:
+        for _, name, bad, output in stage.tests:
             if bad:
                 print(f"failed in {stage.name}: {name}")
+                for line in output.splitlines()[-options.lines :]:
+                    print(f"    {line}")
     print(f"stages: {len(stages) - len(failed)} passed, {len(failed)} failed")
     return 1 if failed or not stages else 0
 
