@@ -87,6 +87,7 @@ TEST_CASE("a ball of 672 links' mass swings on its chain", "[joint]") {
 }
 
 TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
+  constexpr int kSeeds = 8;
   for (Space space : kSpaces) {
     std::vector<JointType> types = {
         HingeJoint{},
@@ -111,27 +112,33 @@ TEST_CASE("every joint lives through half a minute of shaking", "[joint]") {
       }
       const Plan plan = compile(scene);
       for (const Table& table : widest_tables()) {
-        Batch batch(plan, options_of(table));
         INFO(name(table) << (space == Space::planar ? " planar" : " spatial") << " type " << k);
-        Random random(7);
-        double fastest = 0;
-        for (int i = 0; i < 1800; ++i) {
-          for (int b = 0; b < 3; ++b) {
-            Vec3 force = random.in_cube(100);
-            if (space == Space::planar) force.z() = 0;
-            batch.add_force(0, batch.body_in_row(b), force);
-            batch.add_torque(0, batch.body_in_row(b), Vec3(0, 0, random.uniform(-10, 10)));
-          }
-          batch.step();
-          fastest = std::max(fastest, max_speed(batch, 0));
-        }
-        CHECK(batch.status(0) == Status::ok);
-        CHECK(fastest < 100);
-        batch.step(5);
         const bool holds = std::holds_alternative<HingeJoint>(types[k]) ||
                            std::holds_alternative<FixedJoint>(types[k]) ||
                            std::holds_alternative<BallJoint>(types[k]);
-        if (holds) CHECK(worst_gap(batch, 0) < 0.02);
+        double gaps = 0;
+        for (int seed = 0; seed < kSeeds; ++seed) {
+          Batch batch(plan, options_of(table));
+          Random random(static_cast<std::uint64_t>(seed));
+          double fastest = 0;
+          for (int i = 0; i < 1800; ++i) {
+            for (int b = 0; b < 3; ++b) {
+              Vec3 force = random.in_cube(100);
+              if (space == Space::planar) force.z() = 0;
+              batch.add_force(0, batch.body_in_row(b), force);
+              batch.add_torque(0, batch.body_in_row(b), Vec3(0, 0, random.uniform(-10, 10)));
+            }
+            batch.step();
+            fastest = std::max(fastest, max_speed(batch, 0));
+          }
+          CHECK(batch.status(0) == Status::ok);
+          CHECK(fastest < 100);
+          batch.step(5);
+          gaps += worst_gap(batch, 0);
+          if (holds) CHECK(worst_gap(batch, 0) < 0.05);
+        }
+        // The gap of one moment of shaking is anything up to three times the mean.
+        if (holds) CHECK(gaps / kSeeds < 0.015);
       }
     }
   }
