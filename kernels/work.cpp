@@ -4,6 +4,7 @@
 
 #include "kernels/lane/planar_inertia.hpp"
 #include "kernels/lane/spatial.hpp"
+#include "kernels/motion/substep_rotation.hpp"
 #include "kernels/rows/block_impulses.hpp"
 #include "kernels/rows/resistance.hpp"
 #include "kernels/work/solver_tables.hpp"
@@ -263,8 +264,10 @@ void carve(const Constants& t, Work& w, Carver& c) {
     const std::size_t bytes =
         t.dimension == kernels::Dimension::planar ? part_bytes(Planar{}) : part_bytes(Tensor{});
     c.take(w.parts, count(t.parts) * bytes);
-    const int swept = t.dimension == kernels::Dimension::planar ? 2 : 4;
-    c.take(w.swept, count((t.bodies + 2) * swept * lanes));
+    const int rotation =
+        t.dimension == kernels::Dimension::planar ? kRotationRows<Planar> : kRotationRows<Tensor>;
+    c.take(w.rotation, count((t.bodies + 2) * rotation * lanes));
+    c.take(w.swept, count(t.bodies + 2));
     c.take(w.loads, count(t.breakable * row * lanes));
     if (t.breakable > 0) c.take(w.reached, count(t.bodies));
   }

@@ -80,8 +80,9 @@ struct JointPart {
   bool force;                   // nothing but a spring, which the integrator of the plan evaluates
   TurnHold turn_hold;
   PointHold point_hold;
-  bool direct;                                   // of a tree that is solved at once, not swept over
-  bool gradual;                                  // begins apart, and closes by its `pull`
+  bool direct;   // of a tree that is solved at once, not swept over
+  bool gradual;  // begins apart, and closes by its `pull`
+  bool curved;   // closes where the rotation of its bodies takes it (motion/substep_rotation.hpp)
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 // May its rows give energy to the bodies?

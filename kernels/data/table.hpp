@@ -62,7 +62,9 @@ template <class Real>
 struct JointSolver {
   Stage<Real> prepare;     // rows at the start of the step; after SolverTable::enter
   Stage<Real> warm_start;  // the impulses so far, in every substep
+  Stage<Real> predict;     // the motion of the substep, after warm_start (tgs_soft)
   Stage<Real> bias;        // with Options::relaxation where nothing bounds a part
+  Stage<Real> rotate;      // bodies, after SolverTable::advance
   Stage<Real> relax;
   Stage<Real> follow;  // rows where the substeps have taken the bodies; relax does it by itself
   Stage<Real> store;

@@ -44,7 +44,7 @@ template <class T>
 struct PrincipalInertia {
   T inertia[3], inverse[3];
   T rate[3];      // dt / (2 I_x), dt / (2 I_y), dt / I_z
-  T angle_bound;  // dt / I_min: times |L|, a bound of the angle about every axis, rad
+  T angle_bound;  // dt / sqrt(I_min): times sqrt(L . w), a bound of the angle about every axis, rad
 };
 
 template <class T>
@@ -111,7 +111,9 @@ struct ConstantBlocks {
 // What is the same in all worlds.
 struct BodyTable {
   bool kinematic;
-  bool jointed;  // a joint acts on it
+  bool jointed;         // a joint acts on it
+  bool rotated;         // by the substeps (kernels/motion/substep_rotation.hpp)
+  std::uint8_t middle;  // principal axis: neither of the largest moment of inertia nor the least
 };
 
 struct ColliderTable {
@@ -185,6 +187,7 @@ struct SceneConstants {
   bool has_sleep;
   std::int32_t audit_every;  // steps of a world; 0: its energy is not audited
   bool has_drives;           // rows of joints that may give energy
+  bool joints_curve;         // some parts are JointPart::curved
   FlightOptions flight;
   SolverOptions<Real> solver;
 

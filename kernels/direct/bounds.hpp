@@ -25,9 +25,9 @@ template <class S>
 class Bound {
  public:
   // closes: limits are closed, too. `first`: the substep has no impulses yet.
-  MW_INLINE Bound(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
-                  Row<S>& s, EdgeDof<S>& dof, const DofFactors<S>& factors, bool reversed,
-                  bool closes, bool first)
+  MW_INLINE Bound(const Constants& t, const Group& g, const Work& w, const JointPart& part,
+                  const Joint& constants, Row<S>& s, EdgeDof<S>& dof, const DofFactors<S>& factors,
+                  bool reversed, bool closes, bool first)
       : part_(part),
         c_(constants),
         s_(s),
@@ -40,6 +40,7 @@ class Bound {
     const Float value = Float::load(s.value);
     if (first) value.store(s.driven);
     inv_h_ = t.inv_h;
+    if (closes) curved_ = curving(w, part, s);
     if (part.drive) {
       const DriveTarget target = target_of(g, part, constants);
       wanted_ = target.speed * Float(constants.speed_share);
@@ -48,8 +49,8 @@ class Bound {
         wanted_ = fnma(error, Float(constants.drive_soft.bias_rate), wanted_);
       }
     }
-    if (part.low) low_ = bound(value - Float(constants.low));
-    if (part.high) high_ = bound(Float(constants.high) - value);
+    if (part.low) low_ = bound(value - Float(constants.low)) - curved_;
+    if (part.high) high_ = bound(Float(constants.high) - value) + curved_;
   }
 
   // The active set to begin a step with: what acted at the end of the last one.
@@ -221,7 +222,7 @@ class Bound {
   EdgeDof<S>& dof_;
   const DofFactors<S>& factors_;  // of the solves
   bool closes_, first_;
-  Float sign_ = Real(1), inv_h_ = Real(0), began_ = Real(0);
+  Float sign_ = Real(1), inv_h_ = Real(0), began_ = Real(0), curved_ = Real(0);
   Float wanted_ = Real(0);                // speed of a drive
   Float low_ = Real(0), high_ = Real(0);  // bounds of limits
 };
@@ -275,7 +276,7 @@ class EdgeBounds {
   MW_INLINE void visit(const TreeEdge& edge, int part, EdgeDof<S>& dof,
                        const DofFactors<S>& factors, Look look) const {
     if (part < 0) return;
-    look(Bound<S>(t_, g_, t_.part[part], constants_of_part(g_, part),
+    look(Bound<S>(t_, g_, w_, t_.part[part], constants_of_part(g_, part),
                   part_rows<S, Row<S>>(w_, part), dof, factors, edge.reversed, closes_, first_));
   }
 

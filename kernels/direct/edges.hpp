@@ -88,6 +88,21 @@ MW_INLINE Rows& part_rows(const Work& w, int part) {
   return *reinterpret_cast<Rows*>(w.parts + static_cast<std::size_t>(part) * kPartBytes<S>);
 }
 
+// Moments of inertia of the bodies of trees where the substeps have rotated them.
+template <class S>
+MW_INLINE void find_moments(const Constants& t, const Group& g, const Work& w) {
+  for_each_tree_body(t, [&](int b) {
+    const auto& inertia = constants_of_body(g, b).inertia;
+    Real* to = w.direct.rotary + b * S::kInertia * kLanes;
+    if constexpr (S::kDim == 2) {
+      Float(inertia[2]).store(to);
+    } else {
+      const auto axes = load_as<Mat3>(principal_axes(w, b));
+      store(to, rotate_diagonal(axes, AxisOrder(t.body[b].middle).of(inertia)));
+    }
+  });
+}
+
 // Twist of B against A that closes what the parts are apart by, in a substep. Axes too.
 template <class S, bool kDense>
 class EdgeFinder {
@@ -98,7 +113,7 @@ class EdgeFinder {
 
   // Rows of the parts where the substeps have taken the bodies.
   void refresh_parts() const {
-    find_rotations<S, kDense>(t_, w_);
+    if constexpr (S::kDim == 3) find_moments<S>(t_, g_, w_);
     for_each_part<S>(t_, w_, [&](auto& s, const JointPart& part, int i) {
       if (part.direct) refresh<S, kDense, true>(w_, part, constants_of_part(g_, i), s);
     });
@@ -170,9 +185,7 @@ class EdgeFinder {
   MW_INLINE Ang close_lock(const TreeEdge& edge) const {
     const auto& from = part_rows<S, LockRows<S>>(w_, edge.turn);
     const Joint& c = numbers(edge.turn);
-    const auto moved = load_sides<S, Free, kDense>(w_.displacement, from);
-    const Ang error = load_as<Ang>(from.error[0]) + relative_spin(moved.a, moved.b);
-    return -pull_of(error, c.soft.bias_rate, c.angular_pull);
+    return -pull_of(load_as<Ang>(from.error[0]), c.soft.bias_rate, c.angular_pull);
   }
   template <bool kCloses>
   MW_INLINE void hold_swing(const TreeEdge& edge, EdgeRows<S>& s, Vec3& target) const {

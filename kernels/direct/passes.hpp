@@ -15,7 +15,7 @@ struct DirectPasses {
     Work& w = work_of(scratch);
     w.direct.located = 0;
     for (int b = 0; b < t.bodies; ++b) w.direct.held[b] = 0;
-    for_each_tree_body(t, [&](int b) { put_moments(t, g, w, b); });
+    find_moments<S>(t, g, w);
     for (int i = 0; i < t.joint_trees.edges + t.joint_trees.closures; ++i) {
       const TreeEdge& edge = t.joint_trees.edge[i];
       const std::uint32_t lanes = part_rows<S, PartBodies<S>>(w, edge.hold).mask;
@@ -98,17 +98,6 @@ struct DirectPasses {
   }
   static TreeSolve<S, kDense> relaxed(const Constants& t, const Group& g, Work& w) {
     return {t, g, w, w.substep + 1, false, false, false};
-  }
-  static MW_INLINE void put_moments(const Constants& t, const Group& g, Work& w, int b) {
-    const auto& constants = constants_of_body(g, b);
-    Real* to = w.direct.rotary + b * S::kInertia * kLanes;
-    if constexpr (S::kDim == 2) {
-      Float(constants.inertia[2]).store(to);
-    } else {
-      const Quat q = load_quat(state_of(t, g, b, kState<S>.orientation));
-      store(to, rotate_diagonal(
-                    matrix(q), {constants.inertia[0], constants.inertia[1], constants.inertia[2]}));
-    }
   }
 };
 

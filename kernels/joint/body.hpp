@@ -3,8 +3,7 @@
 #pragma once
 
 #include "kernels/lane/solve.hpp"
-#include "kernels/motion/integrate.hpp"
-#include "kernels/rows/body_rows.hpp"
+#include "kernels/motion/substep_rotation.hpp"
 #include "kernels/rows/velocities.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -16,15 +15,54 @@ MW_INLINE const Joint& constants_of_part(const Group& g, int part) {
   return reinterpret_cast<const Joint*>(g.constants.joint)[part];
 }
 
+// A body of a joint, which in space shares its inertia with all its joints: the substeps rotate it.
+struct Jointed {};
+template <>
+struct SideRows<Planar, Jointed> : SideRows<Planar, Free> {};
+template <>
+struct alignas(64) SideRows<Tensor, Jointed> {
+  Real inv_mass[kLanes];
+  const Real* inertia;  // inverse; rows of Work::rotation
+};
+MW_INLINE Float inertia_of(const SideRows<Planar, Jointed>& side) {
+  return Float::load(side.inertia[0]);
+}
+MW_INLINE Sym3 inertia_of(const SideRows<Tensor, Jointed>& side) {
+  return load_as<Sym3>(side.inertia);
+}
+
 // What all parts have. The world is a body that has no velocity and infinite mass.
 template <class S>
 struct alignas(64) PartBodies : RowBodies {
-  SideRows<S, Free> a, b;
+  SideRows<S, Jointed> a, b;
   Real impulse[kernels::kPartImpulses][kLanes];
 };
 
 template <class S, bool kDense>
 using PartVelocities = RowVelocities<S, Free, kDense>;
+
+MW_INLINE Vec3 axis_x(Quat q) {
+  const Float y2 = q.y + q.y, z2 = q.z + q.z;
+  return {fnma(q.z, z2, fnma(q.y, y2, Real(1))), fma(q.x, y2, q.w * z2), fms(q.x, z2, q.w * y2)};
+}
+MW_INLINE Vec3 axis_z(Quat q) {
+  const Float x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+  return {fma(q.x, z2, q.w * y2), fms(q.y, z2, q.w * x2), fnma(q.y, y2, fnma(q.x, x2, Real(1)))};
+}
+MW_INLINE Vec2 axis_x(Rot2 q) { return {q.c, q.s}; }
+
+template <class S>
+MW_INLINE void put_body(const Constants& t, const Group& g, const Work& w, int body,
+                        SideRows<S, Jointed>& side) {
+  const Float zero(Real(0));
+  const bool moves = body < t.bodies;
+  (moves ? Float(constants_of_body(g, body).inv_mass) : zero).store(side.inv_mass);
+  if constexpr (S::kDim == 3) {
+    side.inertia = rotated_inertia(w, body);
+  } else {
+    (moves ? Float(constants_of_body(g, body).inv_inertia[2]) : zero).store(side.inertia[0]);
+  }
+}
 
 MW_INLINE Vec2 vector_of(Planar, const LaneNumber* v) { return {v[0], v[1]}; }
 template <class S>
@@ -37,15 +75,6 @@ MW_INLINE Quat frame_of(S, const LaneNumber* q) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-MW_INLINE Rot2 compose(Rot2 a, Rot2 b) {
-  return {fms(a.c, b.c, a.s * b.s), fma(a.s, b.c, a.c * b.s)};
-}
-MW_INLINE Quat compose(Quat a, Quat b) {
-  return {fnma(a.z, b.z, fnma(a.y, b.y, fnma(a.x, b.x, a.w * b.w))),
-          fnma(a.z, b.y, fma(a.y, b.z, fma(a.x, b.w, a.w * b.x))),
-          fnma(a.x, b.z, fma(a.z, b.x, fma(a.y, b.w, a.w * b.y))),
-          fnma(a.y, b.x, fma(a.x, b.y, fma(a.z, b.w, a.w * b.z)))};
-}
 MW_INLINE Rot2 inverse(Rot2 q) { return {q.c, -q.s}; }
 MW_INLINE Quat inverse(Quat q) { return {q.w, -q.x, -q.y, -q.z}; }
 
@@ -99,48 +128,6 @@ MW_INLINE Frames<S> frames_of(const Constants& t, const Group& g, const JointPar
   return out;
 }
 
-// The rotation of a body by the substeps so far, as finish will apply it (rotate_by): R r - r of a
-// vector.
-template <class S>
-struct SweptRotation {
-  static constexpr int kNumbers = S::kAng + 1;
-  typename S::Ang u;
-  Float scale;
-  MW_INLINE explicit SweptRotation(typename S::Ang swept) {
-    u = swept * half_tangent_ratio(dot(swept, swept));
-    scale = Float(Real(2)) / (Float(Real(1)) + dot(u, u));
-  }
-  // Of a body, which several parts may have; found by find_rotations.
-  MW_INLINE SweptRotation(const Work& w, int body) {
-    const Real* at = w.swept + body * kNumbers * kLanes;
-    u = load_as<typename S::Ang>(at);
-    scale = Float::load(at + S::kAng * kLanes);
-  }
-  MW_INLINE void store(const Work& w, int body) const {
-    Real* at = w.swept + body * kNumbers * kLanes;
-    manyworlds::MW_KERNEL_NAMESPACE::store(at, u);
-    scale.store(at + S::kAng * kLanes);
-  }
-  MW_INLINE Vec3 change(Vec3 r) const {
-    const Vec3 across = cross(u, r);
-    return (across + cross(u, across)) * scale;
-  }
-  MW_INLINE Vec2 change(Vec2 r) const {
-    const Vec2 across = cross(u, r);
-    return (across + cross(u, across)) * scale;
-  }
-};
-
-// Of all bodies that have parts, before these are refreshed: what two parts share is found once.
-template <class S, bool kDense>
-void find_rotations(const Constants& t, const Work& w) {
-  for (int i = 0; i < t.jointed_bodies; ++i) {
-    const int body = t.jointed[i];
-    SweptRotation<S>(get_velocity<S, kDense>(w, w.displacement, body).w).store(w, body);
-  }
-  SweptRotation<S>(zero_of<typename S::Ang>()).store(w, world_body(t));
-}
-
 // Rows between two anchors: from the centres, and their gap, when the step began.
 template <class S>
 struct alignas(64) AnchoredRows : PartBodies<S> {
@@ -167,12 +154,12 @@ MW_INLINE MovedAnchors<S> anchors_now(const Work& w, const AnchoredRows<S>& s,
   out.moved_a = out.moved_b = zero_of<Vec>();
   if constexpr (kMoved) {
     const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    const SweptRotation<S> swept_a(w, s.body_a), swept_b(w, s.body_b);
-    const Vec change_a = swept_a.change(out.arm_a), change_b = swept_b.change(out.arm_b);
+    const Rotation<S> of_a = rotation_of<S>(w, s.body_a), of_b = rotation_of<S>(w, s.body_b);
+    const Vec change_a = of_a.change(out.arm_a), change_b = of_b.change(out.arm_b);
     out.arm_a = out.arm_a + change_a, out.arm_b = out.arm_b + change_b;
     out.moved_a = moved.a.v + change_a, out.moved_b = moved.b.v + change_b;
     out.gap = out.gap + (out.moved_b - out.moved_a);
-    axis = axis + swept_a.change(axis);
+    axis = axis + of_a.change(axis);
   }
   return out;
 }
@@ -225,13 +212,13 @@ MW_INLINE void apply_moments(const PartBodies<S>& s, typename S::Ang l,
 }
 
 // Inverse mass of a point at `arm` from the centre, as a matrix.
-MW_INLINE void add_point_mass(const SideRows<Planar, Free>& side, Vec2 r, Sym2& k) {
+MW_INLINE void add_point_mass(const SideRows<Planar, Jointed>& side, Vec2 r, Sym2& k) {
   const Float inv_mass = Float::load(side.inv_mass), inertia = inertia_of(side);
   k.xx = k.xx + fma(r.y * r.y, inertia, inv_mass);
   k.xy = fnma(r.x * r.y, inertia, k.xy);
   k.yy = k.yy + fma(r.x * r.x, inertia, inv_mass);
 }
-MW_INLINE void add_point_mass(const SideRows<Tensor, Free>& side, Vec3 r, Sym3& k) {
+MW_INLINE void add_point_mass(const SideRows<Tensor, Jointed>& side, Vec3 r, Sym3& k) {
   const Float inv_mass = Float::load(side.inv_mass);
   const Sym3 inertia = inertia_of(side);
   const Float zero(Real(0));
@@ -250,6 +237,19 @@ template <class S, bool kDense>
 MW_INLINE typename S::Vec anchor_speed(const PartVelocities<S, kDense>& v, typename S::Vec arm_a,
                                        typename S::Vec arm_b) {
   return (v.b.v - v.a.v) + (cross(v.b.w, arm_b) - cross(v.a.w, arm_a));
+}
+
+// What B's point moves by against A's in a substep beyond h times their speed, over h. A row that
+// is to be closed at the end of the substep takes it off its speed, so that bodies that rotate
+// neither open their joints nor lose energy as they close: the impulses before and after the motion
+// then are those of the trapezoidal rule, as in RATTLE (Andersen 1983). Of parts that are `curved`.
+MW_INLINE Mask curved_lanes(const Work& w, const RowBodies& s) {
+  return mask_from_bits(~(w.swept[s.body_a] | w.swept[s.body_b]));
+}
+template <class S>
+MW_INLINE typename S::Vec curvature_between(const Work& w, const RowBodies& s,
+                                            typename S::Vec arm_a, typename S::Vec arm_b) {
+  return Curvature<S>(w, s.body_b).of(arm_b) - Curvature<S>(w, s.body_a).of(arm_a);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -85,6 +85,7 @@ MW_INLINE void locate_linear(const JointPart& part, const Joint& constants,
     value = dot(axis, now.gap);
   } else if (part.kind == PartKind::distance) {
     linear_a = linear_b = direction_of(now.gap, value);
+    store(s.start_rope_a[0], now.arm_a), store(s.start_rope_b[0], now.arm_b);
   } else {
     Float rope_a, rope_b;
     const Float ratio = constants.ratio;
@@ -113,8 +114,8 @@ MW_INLINE void locate_angular(const Work& w, const JointPart& part, Row<S>& s) {
   } else {
     auto z_a = load_as<Vec3>(s.start_axis[0]), z_b = load_as<Vec3>(s.start_axis_b[0]);
     if constexpr (kMoved) {
-      z_a = z_a + SweptRotation<S>(w, s.body_a).change(z_a);
-      z_b = z_b + SweptRotation<S>(w, s.body_b).change(z_b);
+      z_a = z_a + rotation_of<S>(w, s.body_a).change(z_a);
+      z_b = z_b + rotation_of<S>(w, s.body_b).change(z_b);
     }
     Float length;
     if (part.kind != PartKind::cone) {
@@ -160,7 +161,7 @@ template <class S, bool kDense, Pass kPass>
 MW_INLINE void solve(const Constants& t, const Group& g, const Work& w, const JointPart& part,
                      const Joint& constants, Row<S>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
-  solve_row<S, kDense, kPass>(t, g, part, constants, s, v);
+  solve_row<S, kDense, kPass>(t, g, w, part, constants, s, v);
 }
 
 // Of both sides of a joint in the state; the world is still.

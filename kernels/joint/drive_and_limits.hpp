@@ -31,10 +31,23 @@ struct RowImpulses {
 
 inline constexpr Real kFirmMotor = Real(1e-3);  // of K: compliance of a rigid motor at a limit
 
+// What free rotation adds in a substep to the mean speed of a coordinate with hard limits.
+template <class S>
+MW_INLINE Float curving(const Work& w, const JointPart& part, const Row<S>& s) {
+  if constexpr (S::kDim == 3) {
+    if ((!part.low && !part.high) || part.soft_limit) return Real(0);
+    const Vec3 a = load_vec3(half_change(w, s.body_a)), b = load_vec3(half_change(w, s.body_b));
+    return dot(load_vec3(s.angular_b[0]), b) - dot(load_vec3(s.angular_a[0]), a);
+  } else {
+    return Real(0);
+  }
+}
+
 // The impulses with which the row ends this pass. `speed`: without any of them.
 template <class S, Pass kPass>
 MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const JointPart& part,
-                                      const Joint& constants, const Row<S>& s, Float speed) {
+                                      const Joint& constants, const Row<S>& s, Float speed,
+                                      Float curved) {
   const Float zero(Real(0)), k = Float::load(s.k), most = constants.max_impulse;
   RowImpulses out{zero, zero, zero};
   // v + lag + give p = 0 of a drive
@@ -53,7 +66,7 @@ MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const 
     Float error = max(gap, zero) * Float(t.inv_h), soft = zero;
     if (kPass == Pass::bias || part.soft_limit) {
       const auto& by = constants.limit_soft;
-      error = select(within, error, gap * Float(by.bias_rate));
+      error = fma(curved, sign, select(within, error, gap * Float(by.bias_rate)));
       const Float of_spring(by.gamma);
       const bool hard = part.drive && !part.soft_limit;
       soft = select(within, zero, hard ? of_spring : fma(k, by.rho, of_spring));
@@ -80,8 +93,30 @@ MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const 
   return out;
 }
 
+// As curvature_between, of the distance, which what moves across it by p in the substep stretches.
+template <class S, bool kDense>
+MW_INLINE Float distance_curvature(const Constants& t, const Work& w, const JointPart& part,
+                                   const Joint& constants, const Row<S>& s,
+                                   const PartVelocities<S, kDense>& v) {
+  using Vec = typename S::Vec;
+  if (part.kind != PartKind::distance || !part.curved) return Real(0);
+  const auto n = load_as<Vec>(s.linear_b[0]), arm_a = load_as<Vec>(s.start_rope_a[0]),
+             arm_b = load_as<Vec>(s.start_rope_b[0]);
+  const Vec curved = curvature_between<S>(w, s, arm_a, arm_b);
+  // With half of the warm start, as the motion will have on average.
+  const auto before = load_sides<S, Free, kDense>(w.warmed, s);
+  const Vec both = (point_velocity(before.b, arm_b) - point_velocity(before.a, arm_a)) +
+                   anchor_speed<S, kDense>(v, arm_a, arm_b);
+  const Vec speed = fma(both, Float(Real(0.5)), curved);
+  const Vec all = fnma(n, dot(n, speed), speed) * Float(t.h),
+            across = select(curved_lanes(w, s), all, zero_of<Vec>());
+  const Float rest = constants.rest, square = rest * rest;
+  const Float left = max(square - dot(across, across), square * Float(Real(0.5)));
+  return fma(rest - sqrt(left), Float(t.inv_h), dot(n, curved));
+}
+
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve_row(const Constants& t, const Group& g, const JointPart& part,
+MW_INLINE void solve_row(const Constants& t, const Group& g, const Work& w, const JointPart& part,
                          const Joint& constants, Row<S>& s, PartVelocities<S, kDense>& v) {
   const RowImpulses before{Float::load(s.impulse[0]), Float::load(s.impulse[1]),
                            Float::load(s.impulse[2])};
@@ -96,14 +131,18 @@ MW_INLINE void solve_row(const Constants& t, const Group& g, const JointPart& pa
     if (kPass == Pass::bias) {
       const Float pull =
           pull_of(value - Float(constants.rest), constants.soft.bias_rate, constants.pull);
-      after = before.drive + soften_row(constants.soft, k, speed + pull, before.drive);
+      const Float firm = Float(constants.soft.rho) + Float(Real(1));
+      const Float curved =
+          fma(distance_curvature<S>(t, w, part, constants, s, v), firm, speed + pull);
+      after = before.drive + soften_row(constants.soft, k, curved, before.drive);
     }
     after.store(s.impulse[0]);
     apply_row<S, kDense>(s, after - before.drive, v);
     return;
   }
+  const Float curved = kPass == Pass::bias ? curving(w, part, s) : Float(Real(0));
   const RowImpulses after =
-      drive_and_limit<S, kPass>(t, g, part, constants, s, fnma(k, before.sum(), speed));
+      drive_and_limit<S, kPass>(t, g, part, constants, s, fnma(k, before.sum(), speed), curved);
   after.drive.store(s.impulse[0]), after.low.store(s.impulse[1]), after.high.store(s.impulse[2]);
   apply_row<S, kDense>(s, after.sum() - before.sum(), v);
 }

@@ -59,6 +59,25 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, LineR
   }
 }
 
+// As curvature_between, of B's anchor against the point of A that is there, which it leaves along
+// the axis at `speed` while A rotates: across the axis that adds p x (speed along it).
+template <class S>
+MW_INLINE typename S::Vec line_curvature(const Work& w, const LineRows<S>& s,
+                                         typename S::Vec speed) {
+  using Vec = typename S::Vec;
+  const Curvature<S> of_a(w, s.body_a), of_b(w, s.body_b);
+  const auto d = load_as<Vec>(s.direction[0][0]);
+  Vec axis;
+  if constexpr (S::kDim == 2) {
+    axis = {d.y, -d.x};
+  } else {
+    axis = cross(d, load_as<Vec>(s.direction[1][0]));
+  }
+  const Vec curved = of_b.of(load_as<Vec>(s.arm_b[0])) - of_a.of(load_as<Vec>(s.arm_a[0]));
+  const Float along = select(curved_lanes(w, s), dot(axis, speed), Real(0));
+  return fnma(cross(of_a.angle, axis), along, curved);
+}
+
 template <class S, bool kDense, Pass kPass>
 MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
                      const Joint& constants, LineRows<S>& s, PartVelocities<S, kDense>& v) {
@@ -67,16 +86,18 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]),
              d = load_as<Vec>(s.direction[0][0]);
   const Float rho = constants.soft.rho, rate = constants.soft.bias_rate;
-  const Float scale = Float(Real(1)) / (rho + Float(Real(1)));
+  const Float firm = rho + Float(Real(1)), scale = Float(Real(1)) / firm;
   if constexpr (S::kDim == 2) {
     const Float before = dot(d, load_as<Vec>(s.impulse[0]));
     if constexpr (kPass == Pass::warm_start) {
       apply_at_anchors<S, kDense>(s, d * before, arm_a, arm_b, v);
       return;
     }
-    Float x = dot(d, anchor_speed<S, kDense>(v, arm_a, arm_b));
+    const Vec speed = anchor_speed<S, kDense>(v, arm_a, arm_b);
+    Float x = dot(d, speed);
     const Float mass = Float::load(s.mass[0]);
     if constexpr (kPass == Pass::bias) {
+      if (part.curved) x = fma(dot(d, line_curvature<S>(w, s, speed)), firm, x);
       x = fma(mass, x + pull_of(Float::load(s.error[0]), rate, constants.pull), before * rho) *
           scale;
     } else {
@@ -96,6 +117,10 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
     const auto mass = load_as<Sym2>(s.mass[0]);
     Vec2 x{dot(d, speed), dot(e, speed)};
     if constexpr (kPass == Pass::bias) {
+      if (part.curved) {
+        const Vec curved = line_curvature<S>(w, s, speed);
+        x = fma(Vec2{dot(d, curved), dot(e, curved)}, firm, x);
+      }
       x = x + pull_of(load_as<Vec2>(s.error[0]), rate, constants.pull);
       x = fma(before, rho, mul(mass, x)) * scale;
     } else {

@@ -7,45 +7,76 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-MW_INLINE Float sum_of(Float a, Float b) { return a + b; }
-MW_INLINE Sym3 sum_of(const Sym3& a, const Sym3& b) {
-  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
-}
-MW_INLINE Float inverse(Float a) { return inverse_or_zero(a); }
-
 // From frame A to frame B, in the world.
 MW_INLINE Float error_between(const Frames<Planar>& f) {
   const Rot2 q = compose(inverse(f.a), f.b);
   return arc_tangent(q.s, q.c);
 }
-template <class S>
-MW_INLINE Vec3 error_between(const Frames<S>& f) {
-  const Quat q = compose(f.b, inverse(f.a));
+MW_INLINE Vec3 error_of(Quat q) {
   const Float two = copysign(Real(2), q.w);
   return {q.x * two, q.y * two, q.z * two};
+}
+template <class S>
+MW_INLINE Vec3 error_between(const Frames<S>& f) {
+  return error_of(compose(f.b, inverse(f.a)));
 }
 
 template <class S>
 struct alignas(64) LockRows : PartBodies<S> {
-  Real error[S::kAng][kLanes];  // at the start of the step
+  Real start[S::kAng + (S::kDim == 3)][kLanes];  // the rotation when the step began
+  // Of the substep.
+  Real error[S::kAng][kLanes];
   Real mass[S::kInertia][kLanes];
 };
 
 template <class S>
 void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              LockRows<S>& s) {
-  store(s.error[0], error_between(frames_of<S>(t, g, part, constants)));
-  store(s.mass[0], inverse(sum_of(inertia_of(s.a), inertia_of(s.b))));
+  const Frames<S> f = frames_of<S>(t, g, part, constants);
+  if constexpr (S::kDim == 2) {
+    store(s.start[0], error_between(f));
+    store(s.mass[0], inverse(sum_of(inertia_of(s.a), inertia_of(s.b))));
+  } else {
+    store(s.start[0], compose(f.b, inverse(f.a)));
+  }
 }
 
-// Its Jacobian stays what it is.
 template <class S, bool kDense, bool kMoved>
-MW_INLINE void refresh(const Work&, const JointPart&, const Joint&, LockRows<S>&) {}
+MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, LockRows<S>& s) {
+  if constexpr (S::kDim == 2) {
+    Float error = Float::load(s.start[0]);
+    if constexpr (kMoved) {
+      const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
+      error = error + relative_spin(moved.a, moved.b);
+    }
+    store(s.error[0], error);
+  } else {
+    Quat q = load_quat(s.start[0]);
+    if constexpr (kMoved) {
+      q = compose(rotation_of<S>(w, s.body_b).q, q);
+      q = compose(q, inverse(rotation_of<S>(w, s.body_a).q));
+    }
+    store(s.error[0], error_of(q));
+    if (kMoved && part.direct) return;
+    store(s.mass[0], inverse(sum_of(inertia_of(s.a), inertia_of(s.b))));
+  }
+}
+
+// As curvature_between, of the rotation.
+template <class S>
+MW_INLINE typename S::Ang lock_curvature(const Work& w, const PartBodies<S>& s) {
+  if constexpr (S::kDim == 2) {
+    return zero_of<Float>();
+  } else {
+    return load_vec3(half_change(w, s.body_b)) - load_vec3(half_change(w, s.body_a));
+  }
+}
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart&,
+MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
                      const Joint& constants, LockRows<S>& s, PartVelocities<S, kDense>& v) {
   using Ang = typename S::Ang;
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
   const auto before = load_as<Ang>(s.impulse[0]);
   if constexpr (kPass == Pass::warm_start) {
     apply_moments<S, kDense>(s, before, v);
@@ -54,10 +85,11 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   const auto mass = load_as<typename S::Inertia>(s.mass[0]);
   Ang rate = relative_spin(v.a, v.b), after;
   if constexpr (kPass == Pass::bias) {
-    const auto moved = load_sides<S, Free, kDense>(w.displacement, s);
-    const Ang error = load_as<Ang>(s.error[0]) + relative_spin(moved.a, moved.b);
-    rate = rate + pull_of(error, constants.soft.bias_rate, constants.angular_pull);
-    const Float rho = constants.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    rate =
+        rate + pull_of(load_as<Ang>(s.error[0]), constants.soft.bias_rate, constants.angular_pull);
+    const Float rho = constants.soft.rho, firm = rho + Float(Real(1)),
+                scale = Float(Real(1)) / firm;
+    if (part.curved) rate = fma(lock_curvature<S>(w, s), firm, rate);
     after = before - (apply(mass, rate) + before * rho) * scale;
   } else {
     after = before - apply(mass, rate);

@@ -50,18 +50,12 @@ struct JointPasses {
     s.mask = active_lanes(t, g, part);
     const int body_a = part.body_a == t.bodies ? world_body(t) : part.body_a;
     s.body_a = body_a, s.body_b = part.body_b;
-    alignas(64) std::int32_t at_a[kLanes], at_b[kLanes];
     for (int l = 0; l < kLanes; ++l) {
       const bool active = ((s.mask >> l) & 1u) != 0;
       s.offset_a[l] = w.velocity_base[l] + (active ? body_a : t.bodies) * S::kRow;
       s.offset_b[l] = w.velocity_base[l] + (active ? part.body_b : t.bodies) * S::kRow;
-      at_a[l] = w.body_base[l] + part.body_a * body_row_size(S::kKind);
-      at_b[l] = w.body_base[l] + part.body_b * body_row_size(S::kKind);
     }
-    BodyRow<S> a, b;
-    load_body_row(t, w, at_a, a);
-    load_body_row(t, w, at_b, b);
-    put_side(a, s.a), put_side(b, s.b);
+    put_body(t, g, w, s.body_a, s.a), put_body(t, g, w, s.body_b, s.b);
     const Real* from = g.joint_impulse + index * kernels::kPartImpulses * kLanes;
     for (int i = 0; i < kernels::kPartImpulses; ++i) {
       Float::load(from + i * kLanes).store(s.impulse[i]);
@@ -99,28 +93,48 @@ struct JointPasses {
     }
   }
 
-  static void share_reactions(const Constants& t, Work& w, Real sign) {
+  // A point knows of the rotation, which is the part before it (held_point.hpp).
+  static void share_reaction(const Constants&, Work& w, const JointPart& part, int index,
+                             const PointRows<S>& s, Real sign) {
+    if (!holds_rotation(part)) return;
+    using Ang = typename S::Ang;
+    const Ang moment = moment_of(s.reaction, load_as<typename S::Vec>(s.impulse[0]));
+    Real* to = reinterpret_cast<PartBodies<S>*>(w.parts +
+                                                static_cast<std::size_t>(index - 1) * kPartBytes<S>)
+                   ->impulse[0];
+    store(to, load_as<Ang>(to) + moment * Float(sign));
+  }
+
+  // Rows come first in their joint, and the last part first back into the state.
+  static void take_reactions(const Constants& t, Work& w) {
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
-      share_reaction(t, w, part, i, s, sign);
+      share_reaction(t, w, part, i, s, Real(-1));
     });
+  }
+  static void return_reactions(const Constants& t, Work& w) {
+    for (int i = t.parts - 1; i >= 0; --i) {
+      for_each_part<S>(t, w, i, i + 1, [&](auto& s, const JointPart& part, int) {
+        share_reaction(t, w, part, i, s, Real(1));
+      });
+    }
   }
 
   // Rows at the start of the step, with the impulses of the last one.
   static void prepare_parts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
+    start_rotations<S>(t, g, w);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       const Joint& constants = constants_of_part(g, i);
       prepare_bodies(t, g, w, part, i, s);
       prepare(t, g, part, constants, s);
       refresh<S, kDense, false>(w, part, constants, s);
     });
-    share_reactions(t, w, Real(-1));
+    take_reactions(t, w);
   }
 
   template <Pass kPass>
   static void pass(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    if constexpr (kPass == Pass::relax) find_rotations<S, kDense>(t, w);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0 || part.direct) return;
       PartVelocities<S, kDense> v(w, s);
@@ -157,9 +171,24 @@ struct JointPasses {
     v.b.v = fma(v.b.v - began.b.v, r, began.b.v), v.b.w = fma(v.b.w - began.b.w, r, began.b.w);
   }
 
+  // How the motion of the substep will curve: by the angular velocities with half of the warm
+  // start, as they will be on average.
+  static void predict(const Constants& t, const Group&, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    for (int i = 0; i < t.jointed_bodies; ++i) {
+      const int body = t.jointed[i];
+      const auto now = get_velocity<S, kDense>(w, w.velocity, body).w,
+                 before = get_velocity<S, kDense>(w, w.warmed, body).w;
+      Curvature<S>(t, w, body, (now + before) * Float(Real(0.5))).store(w, body);
+    }
+  }
+
+  static void rotate(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    rotate_jointed_bodies<S, kDense>(t, g, work_of(scratch));
+  }
+
   static void follow(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    find_rotations<S, kDense>(t, w);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       refresh<S, kDense, true>(w, part, constants_of_part(g, i), s);
     });
@@ -167,7 +196,7 @@ struct JointPasses {
 
   static void keep(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    share_reactions(t, w, Real(1));
+    return_reactions(t, w);
     for_each_part<S>(t, w, [&](auto& s, const JointPart&, int i) {
       const Mask lanes = mask_from_bits(s.mask & ~w.frozen);
       Real* to = g.joint_impulse + i * kernels::kPartImpulses * kLanes;
@@ -186,8 +215,11 @@ struct JointPasses {
       Real* to = w.loads + i * kLoadRows<S>;
       for (int k = 0; w.substep == 0 && k < kLoadRows<S>; k += kLanes) zero.store(to + k);
       const int first = t.breaking[i].first_part;
-      for_each_part<S>(t, w, first, first + t.breaking[i].parts, [&](auto& s, auto&, int) {
-        const Impulse<S> p = impulse_of(s);
+      for_each_part<S>(t, w, first, first + t.breaking[i].parts, [&](auto& s, auto& part, int) {
+        Impulse<S> p = impulse_of(s);
+        if constexpr (requires { s.reaction; }) {
+          if (holds_rotation(part)) p.angular = p.angular + moment_of(s.reaction, p.linear);
+        }
         add_to(to, 0, p.linear);
         add_to(to, S::kDim, p.angular);
       });
@@ -204,9 +236,8 @@ struct JointPasses {
   // Of the state, before or after a step.
   static void gap_energy(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    rotate_body_rows(t, g, w, false);
     prepare_parts(t, g, scratch);
-    share_reactions(t, w, Real(1));
+    return_reactions(t, w);
     const Float zero(Real(0));
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
       if (s.mask == 0 || part.force) return;
@@ -219,9 +250,9 @@ struct JointPasses {
   }
 
   static kernels::JointSolver<Real> table() {
-    return {
-        prepare_parts, pass<Pass::warm_start>, pass<Pass::bias>, pass<Pass::relax>, follow, keep,
-        bear,          break_joints<S>,        drive_work,       gap_energy};
+    return {prepare_parts, pass<Pass::warm_start>, predict,    pass<Pass::bias>,
+            rotate,        pass<Pass::relax>,      follow,     keep,
+            bear,          break_joints<S>,        drive_work, gap_energy};
   }
 };
 

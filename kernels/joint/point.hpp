@@ -7,7 +7,7 @@
 // than a given force.
 #pragma once
 
-#include "kernels/joint/body.hpp"
+#include "kernels/joint/held_point.hpp"
 #include "kernels/rows/contact.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
@@ -37,12 +37,18 @@ struct alignas(64) PointRows : AnchoredRows<S> {
   // Of a spring: K'^-1, and the gap of the bias pass.
   Real soft_mass[S::kDim * (S::kDim + 1) / 2][kLanes];
   Real drawn[S::kDim][kLanes];
+  // Where the rotation is held: its free axis at the start of the step, and the answer.
+  Real free_axis[S::kAng][kLanes];
+  Reaction<S> reaction;
 };
 
 template <class S>
 void prepare(const Constants& t, const Group& g, const JointPart& part, const Joint& constants,
              PointRows<S>& s) {
   start_anchors(anchors_of<S>(t, g, part, constants), s);
+  if constexpr (S::kDim == 3) {
+    if (holds_rotation(part)) store(s.free_axis[0], axis_z(frames_of<S>(t, g, part, constants).a));
+  }
 }
 
 template <class S, bool kDense, bool kMoved>
@@ -54,7 +60,13 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint& consta
   store(s.arm_a[0], now.arm_a), store(s.arm_b[0], now.arm_b), store(s.gap[0], now.gap);
   if (kMoved && part.direct) return;
   typename PointMass<S>::Type k{};
-  add_point_mass(s.a, now.arm_a, k), add_point_mass(s.b, now.arm_b, k);
+  if (holds_rotation(part)) {
+    auto axis = load_as<typename S::Ang>(s.free_axis[0]);
+    if constexpr (S::kDim == 3 && kMoved) axis = axis + rotation_of<S>(w, s.body_a).change(axis);
+    k = hold_point(part, s, now.arm_a, now.arm_b, axis, s.reaction);
+  } else {
+    add_point_mass(s.a, now.arm_a, k), add_point_mass(s.b, now.arm_b, k);
+  }
   if (part.spring) {
     const Float rho = constants.soft.rho, gamma = constants.soft.gamma;
     store(s.soft_mass[0], inverse(soften(k, rho, gamma)));
@@ -70,6 +82,15 @@ MW_INLINE typename S::Vec limit_length(typename S::Vec p, Float most) {
   return p * (most / max(length, max(most, Real(1e-30))));
 }
 
+// At the anchors, with the answer of what holds the rotation.
+template <class S, bool kDense, class Rows>
+MW_INLINE void apply_held(const JointPart& part, const Rows& s, typename S::Vec p,
+                          typename S::Vec arm_a, typename S::Vec arm_b,
+                          PartVelocities<S, kDense>& v) {
+  apply_at_anchors<S, kDense>(s, p, arm_a, arm_b, v);
+  if (holds_rotation(part)) apply_moments<S, kDense>(s, moment_of(s.reaction, p), v);
+}
+
 template <class S, bool kDense, Pass kPass>
 MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
                      const Joint& constants, PointRows<S>& s, PartVelocities<S, kDense>& v) {
@@ -77,8 +98,8 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   using Mass = typename PointMass<S>::Type;
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
   if constexpr (kPass == Pass::warm_start) {
-    apply_at_anchors<S, kDense>(s, load_as<Vec>(s.impulse[0]), load_as<Vec>(s.arm_a[0]),
-                                load_as<Vec>(s.arm_b[0]), v);
+    apply_held<S, kDense>(part, s, load_as<Vec>(s.impulse[0]), load_as<Vec>(s.arm_a[0]),
+                          load_as<Vec>(s.arm_b[0]), v);
     return;
   }
   const auto arm_a = load_as<Vec>(s.arm_a[0]), arm_b = load_as<Vec>(s.arm_b[0]);
@@ -93,13 +114,15 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   } else if (kPass == Pass::bias) {
     // (1 + rho)^-1 of the hard row's answer, as K' is (1 + rho) K.
     rate = rate + pull_of(load_as<Vec>(s.gap[0]), constants.soft.bias_rate, constants.pull);
-    const Float rho = constants.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    const Float rho = constants.soft.rho, firm = rho + Float(Real(1)),
+                scale = Float(Real(1)) / firm;
+    if (part.curved) rate = fma(curvature_between<S>(w, s, arm_a, arm_b), firm, rate);
     after = before - (mul(mass, rate) + before * rho) * scale;
   } else {
     after = before - mul(mass, rate);
   }
   store(s.impulse[0], after);
-  apply_at_anchors<S, kDense>(s, after - before, arm_a, arm_b, v);
+  apply_held<S, kDense>(part, s, after - before, arm_a, arm_b, v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -14,7 +14,8 @@ struct alignas(64) Row : AnchoredRows<S> {
   // At the start of the step. Axes: x of A for a slide, else z of A, and z of B; the one of A about
   // which a wheel's slide turns, or along which it slides where the row is its rotation.
   Real start_axis[3][kLanes], start_axis_b[3][kLanes], start_other[3][kLanes];
-  Real start_rope_a[S::kDim][kLanes], start_rope_b[S::kDim][kLanes];  // of a pulley
+  // Of a pulley; of a distance its arms in the substep.
+  Real start_rope_a[S::kDim][kLanes], start_rope_b[S::kDim][kLanes];
   Real start_value[kLanes];
   // Of the substep.
   Real linear_a[S::kDim][kLanes], linear_b[S::kDim][kLanes];

@@ -8,16 +8,6 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-MW_INLINE Vec3 axis_x(Quat q) {
-  const Float y2 = q.y + q.y, z2 = q.z + q.z;
-  return {fnma(q.z, z2, fnma(q.y, y2, Real(1))), fma(q.x, y2, q.w * z2), fms(q.x, z2, q.w * y2)};
-}
-MW_INLINE Vec3 axis_z(Quat q) {
-  const Float x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
-  return {fma(q.x, z2, q.w * y2), fms(q.y, z2, q.w * x2), fnma(q.y, y2, fnma(q.x, x2, Real(1)))};
-}
-MW_INLINE Vec2 axis_x(Rot2 q) { return {q.c, q.s}; }
-
 template <class S>
 struct alignas(64) SwingRows : PartBodies<S> {
   Real start_a[3][kLanes], start_b[3][kLanes];  // z axes at the start of the step
@@ -38,8 +28,8 @@ template <class S, bool kDense, bool kMoved>
 MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, SwingRows<S>& s) {
   auto z_a = load_as<Vec3>(s.start_a[0]), z_b = load_as<Vec3>(s.start_b[0]);
   if constexpr (kMoved) {
-    z_a = z_a + SweptRotation<S>(w, s.body_a).change(z_a);
-    z_b = z_b + SweptRotation<S>(w, s.body_b).change(z_b);
+    z_a = z_a + rotation_of<S>(w, s.body_a).change(z_a);
+    z_b = z_b + rotation_of<S>(w, s.body_b).change(z_b);
   }
   const Vec3 b = any_tangent(z_a), c = cross(z_a, b), lean = cross(z_a, z_b);
   store(s.across[0][0], b), store(s.across[1][0], c);
@@ -48,6 +38,13 @@ MW_INLINE void refresh(const Work& w, const JointPart& part, const Joint&, Swing
   const auto inertia = sum_of(inertia_of(s.a), inertia_of(s.b));
   const Vec3 of_b = apply(inertia, b), of_c = apply(inertia, c);
   store(s.mass[0], inverse(Sym2{dot(b, of_b), dot(b, of_c), dot(c, of_c)}));
+}
+
+// As curvature_between, of z_A x z_B.
+template <class S>
+MW_INLINE Vec3 swing_curvature(const Work& w, const SwingRows<S>& s) {
+  const Vec3 axis = cross(load_as<Vec3>(s.across[0][0]), load_as<Vec3>(s.across[1][0]));
+  return cross(axis, Curvature<S>(w, s.body_b).of(axis) - Curvature<S>(w, s.body_a).of(axis));
 }
 
 template <class S, bool kDense, Pass kPass>
@@ -67,7 +64,12 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   if constexpr (kPass == Pass::bias) {
     rate =
         rate + pull_of(load_as<Vec2>(s.error[0]), constants.soft.bias_rate, constants.angular_pull);
-    const Float rho = constants.soft.rho, scale = Float(Real(1)) / (rho + Float(Real(1)));
+    const Float rho = constants.soft.rho, firm = rho + Float(Real(1)),
+                scale = Float(Real(1)) / firm;
+    if (part.curved) {
+      const Vec3 curved = swing_curvature<S>(w, s);
+      rate = fma(Vec2{dot(b, curved), dot(c, curved)}, firm, rate);
+    }
     after = before - (mul(mass, rate) + before * rho) * scale;
   } else {
     after = before - mul(mass, rate);

@@ -54,6 +54,8 @@ MW_INLINE Vec3 fnma(Vec3 a, Float s, Vec3 c) {
   return {fnma(a.x, s, c.x), fnma(a.y, s, c.y), fnma(a.z, s, c.z)};
 }
 MW_INLINE Float dot(Vec3 a, Vec3 b) { return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x)); }
+// By components.
+MW_INLINE Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 MW_INLINE Vec3 cross(Vec3 a, Vec3 b) {
   return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
 }
@@ -104,6 +106,16 @@ MW_INLINE Quat normalize(Quat q) {
 }
 MW_INLINE Quat mul(Quat a, Quat b) {
   return {fnma(a.z, b.z, fnma(a.y, b.y, fms(a.w, b.w, a.x * b.x))),
+          fnma(a.z, b.y, fma(a.y, b.z, fma(a.x, b.w, a.w * b.x))),
+          fnma(a.x, b.z, fma(a.z, b.x, fma(a.y, b.w, a.w * b.y))),
+          fnma(a.y, b.x, fma(a.x, b.y, fma(a.z, b.w, a.w * b.z)))};
+}
+// The rotation b, then a.
+MW_INLINE Rot2 compose(Rot2 a, Rot2 b) {
+  return {fms(a.c, b.c, a.s * b.s), fma(a.s, b.c, a.c * b.s)};
+}
+MW_INLINE Quat compose(Quat a, Quat b) {
+  return {fnma(a.z, b.z, fnma(a.y, b.y, fnma(a.x, b.x, a.w * b.w))),
           fnma(a.z, b.y, fma(a.y, b.z, fma(a.x, b.w, a.w * b.x))),
           fnma(a.x, b.z, fma(a.z, b.x, fma(a.y, b.w, a.w * b.y))),
           fnma(a.y, b.x, fma(a.x, b.y, fma(a.z, b.w, a.w * b.z)))};

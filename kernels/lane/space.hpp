@@ -83,6 +83,9 @@ MW_INLINE void load(const Real* p, Sym2& a) {
 }
 MW_INLINE void load(const Real* p, Rot2& a) { a = load_rot2(p); }
 MW_INLINE void load(const Real* p, Quat& a) { a = load_quat(p); }
+MW_INLINE void load(const Real* p, Mat3& a) {
+  a = {load_vec3(p), load_vec3(p + 3 * kLanes), load_vec3(p + 6 * kLanes)};
+}
 // Adds to rows of lanes.
 MW_INLINE void add_to(Real* rows, int row, Float x) {
   (Float::load(rows + row * kLanes) + x).store(rows + row * kLanes);
@@ -101,6 +104,9 @@ MW_INLINE void store(Real* p, const Sym2& a) {
 MW_INLINE void store(Real* p, const Sym3& a) {
   a.xx.store(p), a.xy.store(p + kLanes), a.xz.store(p + 2 * kLanes);
   a.yy.store(p + 3 * kLanes), a.yz.store(p + 4 * kLanes), a.zz.store(p + 5 * kLanes);
+}
+MW_INLINE void store(Real* p, const Mat3& a) {
+  store(p, a.x), store(p + 3 * kLanes, a.y), store(p + 6 * kLanes, a.z);
 }
 template <class T>
 MW_INLINE T load_as(const Real* p) {
@@ -150,6 +156,9 @@ MW_INLINE void store_velocity_row(S, Real* base, const std::int32_t* o, const Ve
 MW_INLINE Sym3 select(Mask m, const Sym3& a, const Sym3& b) {
   return {select(m, a.xx, b.xx), select(m, a.xy, b.xy), select(m, a.xz, b.xz),
           select(m, a.yy, b.yy), select(m, a.yz, b.yz), select(m, a.zz, b.zz)};
+}
+MW_INLINE Mat3 select(Mask m, const Mat3& a, const Mat3& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 template <class S>
 MW_INLINE Velocity<S> select(Mask m, const Velocity<S>& a, const Velocity<S>& b) {

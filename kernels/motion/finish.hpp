@@ -5,7 +5,7 @@
 
 #include "kernels/collide/cast.hpp"
 #include "kernels/lane/finite.hpp"
-#include "kernels/motion/integrate.hpp"
+#include "kernels/motion/substep_rotation.hpp"
 #include "kernels/work/activity.hpp"
 #include "kernels/work/half_turn.hpp"
 #include "kernels/work/stages.hpp"
@@ -156,7 +156,8 @@ MW_INLINE void rotate_body(const Constants& t, const Group& g, int body, typenam
 }
 
 // Orientations and angular velocities of kBodies bodies from `first` whose inertia is a tensor:
-// free lanes tumble exactly, lanes in contact rotate by the angle that the substeps swept.
+// bodies with joints are where the substeps have rotated them; of the others, free lanes tumble
+// exactly, and lanes in contact rotate by the angle that the substeps swept.
 template <bool kDense, int kBodies, class Keep, class Flight>
 MW_INLINE void rotate_tensors(const Constants& t, const Group& g, Work& w, int first, Keep keep,
                               const Flight& flight) {
@@ -169,7 +170,11 @@ MW_INLINE void rotate_tensors(const Constants& t, const Group& g, Work& w, int f
     q[i] = old[i] = load_quat(state_of(t, g, first + i, kState<Tensor>.orientation));
   }
   std::uint32_t held_everywhere = kAllLanes;
-  for (int i = 0; i < kBodies; ++i) held_everywhere &= w.touched[first + i];
+  bool rotated[kBodies];  // by the substeps
+  for (int i = 0; i < kBodies; ++i) {
+    rotated[i] = t.body[first + i].rotated;
+    if (!rotated[i]) held_everywhere &= w.touched[first + i];
+  }
   if constexpr (kFreeFlight<Flight>) {
     for (int i = 0; i < kBodies; ++i) {
       const auto end = flight.of(first + i);
@@ -181,22 +186,16 @@ MW_INLINE void rotate_tensors(const Constants& t, const Group& g, Work& w, int f
   for (int i = 0; i < kBodies; ++i) {
     const std::uint32_t touched = w.touched[first + i];
     Vec3 spin = tumbled[i];
-    if (touched != 0) {
+    if (rotated[i]) {
+      const Quat by = rotation_of<Tensor>(w, first + i).q;
+      const Mask held = mask_from_bits(kFreeFlight<Flight> ? touched : kAllLanes);
+      q[i] = select(held, normalize(compose(by, old[i])), q[i]);
+      spin = select(held, omega[i], spin);
+    } else if (touched != 0) {
       const Mask held = mask_from_bits(touched);
       const Vec3 swept = get_velocity<Tensor, kDense>(w, w.displacement, first + i).w;
       q[i] = select(held, rotate_by(old[i], swept), q[i]);
       spin = select(held, omega[i], spin);
-      if (t.has_joints && !t.body[first + i].kinematic) {
-        const Vec3 before = load_vec3(state_of(t, g, first + i, kState<Tensor>.angular));
-        const Vec3 moments = relative_moments(constants_of_body(g, first + i));
-        const Mat3 r = matrix(old[i]);
-        const Mask slight = held & is_slightly_gyroscopic(t.dt, moments, r, before);
-        if (any(slight)) {
-          const Vec3 half = half_gyroscopic(t.dt, moments, r, before) - before;
-          const Vec3 kept = keep_momentum(moments, old[i], q[i], omega[i] - half, omega[i]);
-          spin = select(slight, kept, spin);
-        }
-      }
     }
     if (t.body[first + i].kinematic) spin = omega[i];
     Real* p = state_of(t, g, first + i, kState<Tensor>.orientation);
@@ -265,6 +264,7 @@ void commit_lanes(const Constants& t, const Group& g, Work& w, std::uint32_t com
         if constexpr (std::is_same_v<S, Tensor>) {
           w.touched[b] |= bits(stops);
           put_velocity<S, kDense>(w, w.displacement, b, {way, angle});
+          if (t.body[b].rotated) put_rotation(w, b, stops, angle);
           if constexpr (kFreeFlight<Flight>) put_velocity<S, kDense>(w, w.velocity, b, v);
         }
       }

@@ -64,6 +64,15 @@ MW_INLINE Velocity<S> get_velocity(const Work& w, const Real* array, int body) {
     return load_velocity_row(S{}, array, o);
   }
 }
+// Of the angular velocity alone, if it has been got from there.
+template <bool kDense>
+MW_INLINE void put_spin(const Work& w, Real* array, int body, const Velocity<Tensor>& v) {
+  if constexpr (kDense) {
+    store(array + body * kVelocityBlock<Tensor> + Tensor::kDim * kLanes, v.w);
+  } else {
+    put_velocity<Tensor, kDense>(w, array, body, v);
+  }
+}
 
 // Does a control act on this body?
 MW_INLINE bool is_thrust(const Constants& t, int body) {
@@ -172,7 +181,7 @@ void enter_velocities(const Constants& t, const Group& g, Work& w) {
     for (int i = 0; i < t.bodies * kVelocityBlock<S>; i += kLanes) zero.store(w.displacement + i);
     for (int i = 0; t.has_joints && i < kVelocityBlock<S>; i += kLanes) {
       const int at = world_body(t) * kVelocityBlock<S> + i;
-      zero.store(w.velocity + at), zero.store(w.displacement + at);
+      zero.store(w.velocity + at), zero.store(w.displacement + at), zero.store(w.warmed + at);
     }
   } else {
     const int block = w.rows_per_lane * S::kRow;
@@ -210,18 +219,12 @@ void apply_first_delta_v(const Constants& t, const Group& g, Work& w) {
   enter_factors<S, kDense>(t, g, w);
   if constexpr (std::is_same_v<S, Tensor>) {
     for (int b = 0; b < t.bodies; ++b) {
-      if (w.touched[b] == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
+      const std::uint32_t lanes = t.body[b].rotated ? w.swept[b] : w.touched[b];
+      if (lanes == 0 || t.body[b].kinematic) continue;  // kinematic: no inertia
       const Vec3 moments = relative_moments(constants_of_body(g, b));
       const Mat3 r = matrix(load_quat(state_of(t, g, b, kState<S>.orientation)));
       Velocity<S> v = get_velocity<S, kDense>(w, w.velocity, b);
-      Vec3 gyroscopic = implicit_gyroscopic(t.dt, moments, r, v.w);
-      if (t.has_joints) {
-        const Mask slight = is_slightly_gyroscopic(t.dt, moments, r, v.w);
-        if (any(slight)) {
-          gyroscopic = select(slight, half_gyroscopic(t.dt, moments, r, v.w), gyroscopic);
-        }
-      }
-      v.w = select(mask_from_bits(w.touched[b]), gyroscopic, v.w);
+      v.w = select(mask_from_bits(lanes), implicit_gyroscopic(t.dt, moments, r, v.w), v.w);
       put_velocity<S, kDense>(w, w.velocity, b, v);
     }
   }

@@ -3,9 +3,10 @@
 // Free bodies: DLM splitting (Dullweber, Leimkuhler, McLachlan 1997). In the body frame the angular
 // momentum L is rotated about x, y, z, y, x by half, half, full, half, half of dt L_k / I_k, and
 // the orientation rotates against it, so that L stays put in the world. Symplectic, |L| kept to
-// rounding, energy bounded. Bodies in contact: one Newton step of the implicit gyroscopic equation
-// in the body frame (Catto 2015), which loses energy but cannot gain it, since splitting would
-// spoil solved contact speeds.
+// rounding, energy bounded. Bodies with joints, in every substep: a shorter splitting
+// (split_about_y). Bodies in contact: one Newton step of the implicit gyroscopic equation in the
+// body frame (Catto 2015), which loses energy but cannot gain it, since splitting would spoil
+// solved contact speeds.
 #pragma once
 
 #include "kernels/lane/space.hpp"
@@ -85,26 +86,67 @@ MW_INLINE void rotate_z(Float a, Spin& o) {
   o.q = {fnma(t, o.q.z, o.q.w), fma(t, o.q.y, o.q.x), fnma(t, o.q.x, o.q.y), fma(t, o.q.w, o.q.z)};
 }
 
+// What turns angular momenta into angles of a splitting step: half of dt / I about x and y, whose
+// rotations come twice, and dt / I about z.
+struct Rates {
+  Float x, y, z;
+};
+MW_INLINE Rates rates_of(const PrincipalInertia& top) {
+  return {top.rate[0], top.rate[1], top.rate[2]};
+}
+
 // One splitting step of kBodies bodies side by side: each rotation waits for the one before it, so
 // the others fill the gaps.
 template <int kBodies>
-MW_INLINE void split_rotation(const PrincipalInertia* const* top, Spin* o) {
-  for (int i = 0; i < kBodies; ++i) rotate_x(o[i].l.x * top[i]->rate[0], o[i]);
-  for (int i = 0; i < kBodies; ++i) rotate_y(o[i].l.y * top[i]->rate[1], o[i]);
-  for (int i = 0; i < kBodies; ++i) rotate_z(o[i].l.z * top[i]->rate[2], o[i]);
-  for (int i = 0; i < kBodies; ++i) rotate_y(o[i].l.y * top[i]->rate[1], o[i]);
-  for (int i = 0; i < kBodies; ++i) rotate_x(o[i].l.x * top[i]->rate[0], o[i]);
+MW_INLINE void split_rotation(const Rates* rates, Spin* o) {
+  for (int i = 0; i < kBodies; ++i) rotate_x(o[i].l.x * rates[i].x, o[i]);
+  for (int i = 0; i < kBodies; ++i) rotate_y(o[i].l.y * rates[i].y, o[i]);
+  for (int i = 0; i < kBodies; ++i) rotate_z(o[i].l.z * rates[i].z, o[i]);
+  for (int i = 0; i < kBodies; ++i) rotate_y(o[i].l.y * rates[i].y, o[i]);
+  for (int i = 0; i < kBodies; ++i) rotate_x(o[i].l.x * rates[i].x, o[i]);
 }
 
-// Square of a bound of the angle about every axis in one step.
-MW_INLINE Float angle2(const PrincipalInertia& top, const Spin& o) {
-  return dot(o.l, o.l) * (top.angle_bound * top.angle_bound);
+// The same about the moment of inertia of the y axis: H = |L|^2 / 2 I_y and what x and z have
+// beside. The first rotates the body about L by |L| dt / I_y, which commutes with the rest: exact
+// for what is symmetric about x or z, and two rotations fewer. Begins with q = 1. If y is the
+// middle moment, no angle is larger than twice the body's; about a rod |L| / I is as much larger as
+// the rod is long. `far`: lanes in which some angle is too large for the series.
+template <int kBodies>
+MW_INLINE void split_about_y(const Rates* rates, Spin* o, Mask* far) {
+  const Float most(kMaxAngle);
+  for (int i = 0; i < kBodies; ++i) {
+    const Vec3 angle = o[i].l * (rates[i].y + rates[i].y);
+    const Float square = dot(angle, angle);
+    const Vec3 u = angle * half_tangent_ratio(square);
+    o[i].q = {Real(1), u.x, u.y, u.z};
+    far[i] = Float(4 * kMaxAngle * kMaxAngle) < square;
+  }
+  const auto about_x = [&](int i) __attribute__((always_inline)) {
+    const Float angle = o[i].l.x * (rates[i].x - rates[i].y);
+    far[i] = far[i] | (most < abs(angle));
+    rotate_x(angle, o[i]);
+  };
+  for (int i = 0; i < kBodies; ++i) about_x(i);
+  for (int i = 0; i < kBodies; ++i) {
+    const Float angle = o[i].l.z * fnma(rates[i].y, Real(2), rates[i].z);
+    far[i] = far[i] | (most < abs(angle));
+    rotate_z(angle, o[i]);
+  }
+  for (int i = 0; i < kBodies; ++i) about_x(i);
 }
+
+MW_INLINE Vec3 times(Vec3 v, const LaneNumber (&c)[3]) {
+  return {v.x * c[0], v.y * c[1], v.z * c[2]};
+}
+
+// Square of a bound of the angle about every axis in one step: the energy L . w stays, and of no
+// axis it can be more. A bound by |L| alone is as much larger as a rod is long.
+MW_INLINE Float angle2(Vec3 l, Vec3 omega, Float bound) { return dot(l, omega) * (bound * bound); }
 
 // Lanes that would rotate too far in one splitting step take a power of two of shorter ones; lanes
 // that are done keep their bits. Those too fast even for kMaxSplits rotate by less.
-inline void split_fast(const PrincipalInertia& top, Spin& o) {
-  const Float far = angle2(top, o);
+// `far`: angle2.
+inline void split_fast(const Rates& rates, Float far, Spin& o) {
   Float splits(Real(1));
   int most = 1;
   while (most < kMaxSplits) {
@@ -121,33 +163,33 @@ inline void split_fast(const PrincipalInertia& top, Spin& o) {
   for (int i = 0; i < most; ++i) {
     const Mask running = Float(static_cast<Real>(i)) < splits;
     Spin next = o;
-    rotate_x(angle(o.l.x, top.rate[0]), next);
-    rotate_y(angle(next.l.y, top.rate[1]), next);
-    rotate_z(angle(next.l.z, top.rate[2]), next);
-    rotate_y(angle(next.l.y, top.rate[1]), next);
-    rotate_x(angle(next.l.x, top.rate[0]), next);
+    rotate_x(angle(o.l.x, rates.x), next);
+    rotate_y(angle(next.l.y, rates.y), next);
+    rotate_z(angle(next.l.z, rates.z), next);
+    rotate_y(angle(next.l.y, rates.y), next);
+    rotate_x(angle(next.l.x, rates.x), next);
     o.l = select(running, next.l, o.l);
     o.q = select(running, next.q, o.q);
   }
-}
-
-MW_INLINE Vec3 times(Vec3 v, const LaneNumber (&c)[3]) {
-  return {v.x * c[0], v.y * c[1], v.z * c[2]};
 }
 
 // Free rotation over dt of kBodies bodies. omega (world) and q become those at the end.
 template <int kBodies>
 MW_INLINE void rotate_free(const PrincipalInertia* const* tops, Vec3* omega, Quat* q) {
   Spin spin[kBodies];
-  Mask far = Float(Real(1)) < Float(Real(0));
+  Rates rates[kBodies];
+  Float far[kBodies];
+  Mask some = Float(Real(1)) < Float(Real(0));
   for (int i = 0; i < kBodies; ++i) {
+    rates[i] = rates_of(*tops[i]);
     spin[i] = {times(rotate_back(q[i], omega[i]), tops[i]->inertia), q[i]};
-    far = far | (Float(kMaxAngle * kMaxAngle) < angle2(*tops[i], spin[i]));
+    far[i] = angle2(spin[i].l, times(spin[i].l, tops[i]->inverse), tops[i]->angle_bound);
+    some = some | (Float(kMaxAngle * kMaxAngle) < far[i]);
   }
-  if (!any(far)) {
-    split_rotation<kBodies>(tops, spin);
+  if (!any(some)) {
+    split_rotation<kBodies>(rates, spin);
   } else {
-    for (int i = 0; i < kBodies; ++i) split_fast(*tops[i], spin[i]);
+    for (int i = 0; i < kBodies; ++i) split_fast(rates[i], far[i], spin[i]);
   }
   for (int i = 0; i < kBodies; ++i) {
     q[i] = normalize(spin[i].q);
@@ -190,55 +232,6 @@ MW_INLINE Vec3 implicit_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 om
   const Mask gains = before < after;
   const Float share = sqrt(before / select(gains, after, one));
   return mul(r, next * select(gains, share, one));
-}
-
-// Two Newton steps of the implicit midpoint rule, I (w' - w) + h/4 (w + w') x I (w + w') = 0.
-MW_INLINE Vec3 midpoint_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 omega) {
-  const Float k(dt * Real(0.25));
-  const Vec3 w = mul_transposed(r, omega);
-  Vec3 next = w;
-  for (int i = 0; i < 2; ++i) {
-    const Vec3 s = w + next, change = next - w;
-    const Vec3 l{s.x * inertia.x, s.y * inertia.y, s.z * inertia.z};
-    const Vec3 gained{change.x * inertia.x, change.y * inertia.y, change.z * inertia.z};
-    next = next - solve_gyroscopic(inertia, s, l, k, fma(cross(s, l), k, gained));
-  }
-  return mul(r, next);
-}
-
-// The gyroscopic term of bodies on joints. Where it is slight they get half of it before the
-// substeps, so that a force fixed to them is rotated by as much as it should on average; when they
-// are rotated, finish keeps the angular momentum that they have without that half. Together that is
-// of second order: a top nods and precesses. A little less than half takes the energy that it would
-// else gain. Where the term is larger, that would not be enough: bodies of three different moments
-// that tumble by a tenth of a radian in a step gain as much as they have in 20 s. They get all of
-// it by implicit Euler, which wears them down.
-inline constexpr Real kGyroscopicShare = Real(0.47);
-inline constexpr Real kSlight = Real(0.005);  // of the angular momentum, in a step
-
-MW_INLINE Mask is_slightly_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 omega) {
-  const Vec3 w = mul_transposed(r, omega);
-  const Vec3 l{w.x * inertia.x, w.y * inertia.y, w.z * inertia.z};
-  const Vec3 change = cross(w, l) * Float(dt);
-  return dot(change, change) < dot(l, l) * Float(kSlight * kSlight);
-}
-MW_INLINE Vec3 half_gyroscopic(Real dt, Vec3 inertia, const Mat3& r, Vec3 omega) {
-  return midpoint_gyroscopic(dt * kGyroscopicShare, inertia, r, omega);
-}
-// What keeping the angular momentum may add to the energy of a step. A body that was struck after
-// it had rotated, and was not rotated by what it had then, would get much more.
-inline constexpr Real kMaxGain = Real(1.01);
-
-// The angular velocity omega after a rotation from `from` to `to`, with the angular momentum of
-// `before` at its start.
-MW_INLINE Vec3 keep_momentum(Vec3 inertia, Quat from, Quat to, Vec3 before, Vec3 omega) {
-  const Vec3 w = rotate_back(from, before);
-  const Vec3 l =
-      rotate_back(to, rotate(from, Vec3{w.x * inertia.x, w.y * inertia.y, w.z * inertia.z}));
-  const Vec3 kept{l.x / inertia.x, l.y / inertia.y, l.z / inertia.z}, own = rotate_back(to, omega);
-  const Float energy =
-      fma(own.x * own.x, inertia.x, fma(own.y * own.y, inertia.y, own.z * own.z * inertia.z));
-  return select(dot(l, kept) <= energy * Float(kMaxGain), rotate(to, kept), omega);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

@@ -81,18 +81,18 @@ MW_INLINE typename S::Vec point_velocity(const Velocity<S>& v, typename S::Vec a
 // ---- impulses ----------------------------------------------------------------------------------
 
 // Adds an impulse p, or `amount` along a direction, with this moment about the centre of mass.
-template <class S>
-MW_INLINE void add_moment(const SideRows<S, Free>& side, typename S::Ang moment, Velocity<S>& v) {
-  v.w = add_applied(v.w, inertia_of<S>(side), moment);
+template <class S, class Kind>
+MW_INLINE void add_moment(const SideRows<S, Kind>& side, typename S::Ang moment, Velocity<S>& v) {
+  v.w = add_applied(v.w, inertia_of(side), moment);
 }
-template <class S>
-MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec p, typename S::Ang moment,
+template <class S, class Kind>
+MW_INLINE void add_impulse(const SideRows<S, Kind>& side, typename S::Vec p, typename S::Ang moment,
                            Velocity<S>& v) {
   v.v = fma(p, Float::load(side.inv_mass), v.v);
   add_moment(side, moment, v);
 }
-template <class S>
-MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec direction, Float amount,
+template <class S, class Kind>
+MW_INLINE void add_impulse(const SideRows<S, Kind>& side, typename S::Vec direction, Float amount,
                            typename S::Ang moment, Velocity<S>& v) {
   v.v = fma(direction, amount * Float::load(side.inv_mass), v.v);
   add_moment(side, moment, v);
@@ -100,18 +100,18 @@ MW_INLINE void add_impulse(const SideRows<S, Free>& side, typename S::Vec direct
 
 // Takes it off: what B gets is taken off A. Not by adding a negated impulse, from which the sign of
 // a zero could differ.
-template <class S>
-MW_INLINE void take_moment(const SideRows<S, Free>& side, typename S::Ang moment, Velocity<S>& v) {
-  v.w = sub_applied(v.w, inertia_of<S>(side), moment);
+template <class S, class Kind>
+MW_INLINE void take_moment(const SideRows<S, Kind>& side, typename S::Ang moment, Velocity<S>& v) {
+  v.w = sub_applied(v.w, inertia_of(side), moment);
 }
-template <class S>
-MW_INLINE void take_impulse(const SideRows<S, Free>& side, typename S::Vec p,
+template <class S, class Kind>
+MW_INLINE void take_impulse(const SideRows<S, Kind>& side, typename S::Vec p,
                             typename S::Ang moment, Velocity<S>& v) {
   v.v = fnma(p, Float::load(side.inv_mass), v.v);
   take_moment(side, moment, v);
 }
-template <class S>
-MW_INLINE void take_impulse(const SideRows<S, Free>& side, typename S::Vec direction, Float amount,
+template <class S, class Kind>
+MW_INLINE void take_impulse(const SideRows<S, Kind>& side, typename S::Vec direction, Float amount,
                             typename S::Ang moment, Velocity<S>& v) {
   v.v = fnma(direction, amount * Float::load(side.inv_mass), v.v);
   take_moment(side, moment, v);

@@ -34,7 +34,6 @@ MW_INLINE void load_pose(const Real* base, const std::int32_t* o, EllipsoidPose&
   e = {box.r, box.p, box.half};
 }
 
-MW_INLINE Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 // A unit direction in the shape's axes, times the radii: as long as the shape reaches along it.
 MW_INLINE Vec3 scaled(const Mat3& r, Vec3 radii, Vec3 n) {
   return times(mul_transposed(r, n), radii);

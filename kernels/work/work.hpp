@@ -244,10 +244,11 @@ struct Work {
   int candidate_room;        // blocks of either
   std::uint32_t* keep;       // [block], lanes that passed it
   BlockList blocks[kLists];
-  unsigned char* parts;                     // rows of joints (kernels/joint/)
-  Real* swept;                              // [body + 2] of what has parts (kernels/joint/body.hpp)
-  Real* loads;                              // [breakable joint] impulses of the step so far
-  std::int32_t* reached;                    // [body] by a joint that broke
+  unsigned char* parts;   // rows of joints (kernels/joint/)
+  Real* rotation;         // [body + 2], of those with joints (kernels/motion/substep_rotation.hpp)
+  std::uint32_t* swept;   // [body] lanes in which they rotate as bodies without joints do
+  Real* loads;            // [breakable joint] impulses of the step so far
+  std::int32_t* reached;  // [body] by a joint that broke
   std::int32_t lane_count[kLists][kLanes];  // manifolds of each lane so far
   std::int32_t cursor[kLists][kLanes];      // kLanes times where matching stands in the stored keys
   std::int32_t key_at_cursor[kLists][kLanes];

@@ -243,6 +243,34 @@ class Builder {
   double h_;
 };
 
+// A pass solves the only joint of its bodies exactly. With others it does not, and what one of them
+// then does before the motion, and another after it, may give energy.
+void find_curved(PlanData& plan) {
+  if (plan.scene.options.solver.method != Solver::tgs_soft) return;
+  std::vector<std::set<int>> joints(plan.bodies.size() + 1);  // the last: the world
+  for (const PlanPart& part : plan.parts) {
+    joints[static_cast<std::size_t>(part.what.body_a)].insert(part.joint);
+    joints[static_cast<std::size_t>(part.what.body_b)].insert(part.joint);
+  }
+  const auto alone = [&](std::int32_t body) {
+    const auto i = static_cast<std::size_t>(body);
+    return i == plan.bodies.size() || plan.bodies[i].inv_mass == 0 || joints[i].size() == 1;
+  };
+  const auto closes = [](const kernels::JointPart& what) {
+    switch (what.kind) {
+      case PartKind::point: return !what.spring;
+      case PartKind::distance: return what.equality;
+      default:
+        return what.kind == PartKind::lock || what.kind == PartKind::swing ||
+               what.kind == PartKind::line;
+    }
+  };
+  for (PlanPart& part : plan.parts) {
+    part.what.curved = closes(part.what) && !part.what.direct && alone(part.what.body_a) &&
+                       alone(part.what.body_b);
+  }
+}
+
 }  // namespace
 
 void collect_joints(PlanData& plan) {
@@ -252,6 +280,7 @@ void collect_joints(PlanData& plan) {
     Builder(plan, static_cast<int>(i)).build();
   }
   collect_joint_trees(plan);
+  find_curved(plan);
 }
 
 std::set<std::pair<int, int>> joined_bodies(const Scene& scene) {

@@ -1,6 +1,7 @@
 #include "src/state/constants.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -22,7 +23,7 @@ kernels::PrincipalInertia<Real> principal_of(const PlanBody& body, double dt) {
   copy_numbers(inertia, out.inertia);
   copy_numbers(inverse, out.inverse);
   copy_numbers(Vec3(inverse.cwiseProduct(Vec3(dt / 2, dt / 2, dt))), out.rate);
-  out.angle_bound = static_cast<Real>(dt * inverse.maxCoeff());
+  out.angle_bound = static_cast<Real>(dt * std::sqrt(inverse.maxCoeff()));
   return out;
 }
 

@@ -24,6 +24,8 @@ void JointTables::add_parts(const PlanData& plan) {
   std::sort(jointed_.begin(), jointed_.end());
   jointed_.erase(std::unique(jointed_.begin(), jointed_.end()), jointed_.end());
   has_drives_ = std::any_of(parts_.begin(), parts_.end(), kernels::gives_energy);
+  joints_curve_ = std::any_of(parts_.begin(), parts_.end(),
+                              [](const kernels::JointPart& part) { return part.curved; });
 }
 
 void JointTables::add_breaking(const PlanData& plan) {

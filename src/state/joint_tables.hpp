@@ -23,7 +23,7 @@ class JointTables {
     t.jointed = jointed_.data(), t.jointed_bodies = size(jointed_);
     t.breaking = breaking_.data(), t.breakable = size(breaking_);
     t.joint_trees = joint_trees_;
-    t.has_drives = has_drives_;
+    t.has_drives = has_drives_, t.joints_curve = joints_curve_;
     t.thrust = thrusts_.data();
     t.first_thrust = first_thrust_.empty() ? nullptr : first_thrust_.data();
     t.joined = joined_.empty() ? nullptr : joined_.data();
@@ -46,7 +46,7 @@ class JointTables {
   std::vector<std::int32_t> jointed_;
   std::vector<kernels::BreakTable> breaking_;
   kernels::JointTrees joint_trees_{};
-  bool has_drives_ = false;
+  bool has_drives_ = false, joints_curve_ = false;
   std::vector<kernels::TreeEdge> edges_;
   std::vector<kernels::JointLoops> loops_;
   std::vector<std::int32_t> edge_roots_, edge_bodies_, edge_of_;

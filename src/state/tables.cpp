@@ -1,6 +1,7 @@
 #include "src/state/tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -183,6 +184,14 @@ void TablesOf<Real>::add_flight(const PlanData& plan) {
   }
 }
 
+// The axis of the middle one of three moments; of equal ones the later is larger.
+std::uint8_t middle_axis(const Vec3& moments) {
+  std::array<std::uint8_t, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(),
+                   [&](std::uint8_t a, std::uint8_t b) { return moments[a] < moments[b]; });
+  return axes[1];
+}
+
 template <class Real>
 void TablesOf<Real>::add_bodies(const PlanData& plan) {
   auto& t = tables_;
@@ -192,9 +201,15 @@ void TablesOf<Real>::add_bodies(const PlanData& plan) {
   delta_v_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
   factor_rows_ = AlignedBuffer<Real>((plan.bodies.size() + 2) * row + 16);
   for (std::size_t i = 0; i < factor_rows_.size(); ++i) factor_rows_[i] = 1;
+  std::vector<bool> rotated(plan.bodies.size() + 1);  // the last: the world
+  const bool joints = plan.runs(StepStage::joints);
+  for (const PlanPart& part : plan.parts) {
+    rotated[static_cast<std::size_t>(part.what.body_a)] = joints;
+    rotated[static_cast<std::size_t>(part.what.body_b)] = joints;
+  }
   for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
     const PlanBody& b = plan.bodies[i];
-    bodies_.push_back({b.inv_mass == 0, b.jointed});
+    bodies_.push_back({b.inv_mass == 0, b.jointed, rotated[i], middle_axis(b.inertia)});
     const auto numbers = body_constants<Real>(plan, b);
     for (std::size_t c = 0; c < dim; ++c) delta_v_rows_[i * row + c] = numbers.delta_v[c];
     for (std::size_t c = 0; c < row; ++c) {

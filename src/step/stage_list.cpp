@@ -86,6 +86,7 @@ class Builder {
 
   void tgs_soft() {
     Calls& to = out_.solve;
+    if (t_.joints_curve) add(to, StepStage::joints, joints_.predict);
     // Trees are done with one solve, but for what contacts spoil.
     if (trees()) add(to, StepStage::joints, trees_.bias);
     for (int i = 0; i < t_.solver.iterations; ++i) {
@@ -96,6 +97,7 @@ class Builder {
     // One more brings loads from leg to leg.
     if (trees_touch()) round(StepStage::bias, trees_.bias_round, true);
     add(to, StepStage::advance, solver_.advance);
+    add(to, StepStage::joints, joints_.rotate);
     if (trees()) add(to, StepStage::joints, trees_.relax);
     if (sweeps()) add(to, StepStage::joints, joints_.relax);
     if (trees_touch()) {
@@ -121,6 +123,9 @@ class Builder {
     for (int i = 0; t_.solver.splits && contacts() && i < t_.solver.iterations; ++i) {
       add(to, StepStage::advance, sweeps_.part);
     }
+    add(to, StepStage::joints, joints_.rotate);
+    // Rotation is no impulse to be carried over.
+    if (joints() && contacts()) add(to, StepStage::advance, solver_.mark);
   }
   void sweep_once() {
     add(out_.solve, StepStage::joints, joints_.bias);

@@ -21,6 +21,19 @@ std::vector<Plan> plans() {
   return out;
 }
 
+void add_loose_bodies(Scene& scene) {
+  const Space space = scene.space;
+  for (int i = 0; i < 12; ++i) {
+    const Shape ball = space == Space::planar ? shape_of(Circle{0.15}) : shape_of(Sphere{0.15});
+    const Shape loose = i % 2 == 0 ? ball : shape_of(box_of(space, {0.15, 0.1, 0.1}));
+    Body body =
+        body_of(loose, Vec3(0.5 * (i % 6) - 0.2, 0, 0) + (1.4 + 0.4 * (i / 6)) * up_of(space));
+    body.jitter.position = Vec3::UnitX() * 0.2;
+    body.jitter.angle = 1;
+    scene.add(body);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("joints have the same bits on every instruction set, layout and thread count",
@@ -87,14 +100,7 @@ TEST_CASE("loose bodies have the same bits beside contacts of trees", "[fast][bi
       }
       last = link;
     }
-    for (int i = 0; i < 12; ++i) {
-      const Shape ball = space == Space::planar ? shape_of(Circle{0.15}) : shape_of(Sphere{0.15});
-      const Shape loose = i % 2 == 0 ? ball : shape_of(box_of(space, {0.15, 0.1, 0.1}));
-      Body body = body_of(loose, Vec3(0.5 * (i % 6) - 0.2, 0, 0) + (1.4 + 0.4 * (i / 6)) * up);
-      body.jitter.position = Vec3::UnitX() * 0.2;
-      body.jitter.angle = 1;
-      scene.add(body);
-    }
+    add_loose_bodies(scene);
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       INFO(name(table));
@@ -103,6 +109,30 @@ TEST_CASE("loose bodies have the same bits beside contacts of trees", "[fast][bi
       const auto dense = hashes_after(plan, options, 60);
       options.layout = ContactLayout::rows;
       CHECK(hashes_after(plan, options, 60) == dense);
+    }
+  }
+}
+
+// The groups of a batch share memory, and the layout may change from one to the next.
+TEST_CASE("what hangs on a rod has the same bits beside any contacts", "[fast][bits][joint]") {
+  for (const Space space : kSpaces) {
+    Scene scene = empty_scene(space, 9.81);
+    scene.add(ground(space));
+    const Vec3 up = up_of(space);
+    const BodyId bob = scene.add(lump(space, 1, Vec3::Constant(0.1), Vec3(-3, 0, 0) + 3 * up));
+    scene.add(joint_at(scene, {}, bob, at(Vec3(-3.5, 0, 0) + 3.5 * up), DistanceJoint{}));
+    scene.joints.back().frame_b.position = Vec3::UnitX() * 0.1;
+    add_loose_bodies(scene);
+    const Plan plan = compile(scene);
+    for (const Table& table : widest_tables()) {
+      INFO(name(table));
+      BatchOptions options = options_of(table, 70);
+      options.layout = ContactLayout::dense;
+      const auto dense = hashes_after(plan, options, 90);
+      for (const ContactLayout layout : {ContactLayout::rows, ContactLayout::automatic}) {
+        options.layout = layout;
+        CHECK(hashes_after(plan, options, 90) == dense);
+      }
     }
   }
 }

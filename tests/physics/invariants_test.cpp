@@ -136,7 +136,6 @@ TEST_CASE("worlds of families keep their laws", "[invariants]") {
                                         "prism on a slope",
                                         "rack 2D",
                                         "rack 3D",
-                                        "refinement: top",
                                         "seams 3D",
                                         "turned 3D",
                                         "wall 3D"};

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <variant>
@@ -28,6 +29,37 @@ double twist_between(const Quat& a, const Quat& b) {
   const Quat turn = a.conjugate() * b;
   return 2 * std::atan2(turn.w() < 0 ? -turn.z() : turn.z(), std::abs(turn.w()));
 }
+
+// The axis of the middle moment, of equal ones of the earlier.
+int middle_of(const Vec3& moments) {
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return moments(a) < moments(b); });
+  return axes[1];
+}
+
+// By splitting: as if all moments were the middle one, then by what the others have beside it.
+void rotate_free(double dt, TwinBody& b) {
+  const Vec3 momentum = b.inertia * b.angular, before = b.angular;
+  const Vec3& i = b.moments;
+  const auto about = [](double angle, const Vec3& axis) {
+    return Quat(Eigen::AngleAxisd(angle, axis));
+  };
+  const int middle = middle_of(i), first = (middle + 2) % 3, third = (middle + 1) % 3;
+  if (momentum.norm() > 0) {
+    b.rotation = about(dt * momentum.norm() / i(middle), momentum.normalized()) * b.rotation;
+  }
+  const auto beside = [&](int axis, double time) {
+    const double along = (b.rotation.conjugate() * momentum)(axis);
+    const double rate = 1 / i(axis) - 1 / i(middle);
+    b.rotation = b.rotation * about(time * along * rate, Vec3::Unit(axis));
+  };
+  beside(first, dt / 2), beside(third, dt), beside(first, dt / 2);
+  const Mat3 r = b.rotation.normalized().toRotationMatrix();
+  b.inertia = r * i.asDiagonal() * r.transpose();
+  b.angular = r * (r.transpose() * momentum).cwiseQuotient(i);
+  b.swept = dt / 2 * (before + b.angular);
+}
+
 bool slides(const Joint& joint) { return is_slider(joint) || is_wheel(joint); }
 
 }  // namespace
@@ -39,6 +71,7 @@ JointTwin::JointTwin(const Scene& scene) : scene_(scene) {
     out.rotation = body.rotation.normalized();
     const Mat3 r = out.rotation.toRotationMatrix();
     out.mass = m.mass, out.inertia = r * m.inertia * r.transpose();
+    out.moments = m.inertia.diagonal();
     out.position = body.position;
     out.linear = body.linear_velocity, out.angular = body.angular_velocity;
     bodies_.push_back(out);
@@ -178,7 +211,7 @@ std::vector<JointTwin::LimitRow> JointTwin::limits(double dt, bool first) const 
     if (!first) {
       const auto turned = [&](BodyId body) -> Vec3 {
         if (!body) return Vec3::Zero();
-        return dt * closing_[static_cast<std::size_t>(body.index())].angular;
+        return bodies_[static_cast<std::size_t>(body.index())].swept;
       };
       value += n.dot(turned(joint.body_b) - turned(joint.body_a));
     }
@@ -276,10 +309,7 @@ void JointTwin::step(double dt) {
   closing_ = bodies_;
   for (TwinBody& b : bodies_) {
     b.position += dt * b.linear;
-    const Vec3 turn = dt * b.angular;
-    if (turn.norm() > 0) {
-      b.rotation = Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * b.rotation;
-    }
+    rotate_free(dt, b);
   }
   solve(dt, false);
 }

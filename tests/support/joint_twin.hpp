@@ -15,6 +15,8 @@ struct TwinBody {
   Vec3 position = Vec3::Zero();
   Quat rotation = Quat::Identity();
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+  Vec3 moments = Vec3::Ones();  // about its own axes
+  Vec3 swept = Vec3::Zero();    // rad, dt times the mean of its angular velocities in the motion
 };
 
 // Ball joints, hinges, sliders, fixed and wheel joints between bodies that begin as the scene says,
@@ -24,8 +26,8 @@ class JointTwin {
  public:
   explicit JointTwin(const Scene& scene);
 
-  // One step of dt, s, without substeps: velocities that close what is apart, bodies moved by them,
-  // velocities that keep what is left.
+  // One step of dt, s, without substeps: velocities that close what is apart, bodies moved by them
+  // and rotated with their angular momentum, velocities that keep what is left.
   void step(double dt);
   // As found by the last step before it moved the bodies; then as it left them.
   const std::vector<TwinBody>& closing() const { return closing_; }
