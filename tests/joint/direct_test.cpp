@@ -56,7 +56,7 @@ TEST_CASE("chains of light links keep together under any load", "[joint][slow]")
         CHECK(of_run < 0.5);
       }
     }
-    // What chains lash away where they are drawn taut: where they whip is chaos, so on the mean.
+    // What chains lose where they are drawn taut. How they whip is chaotic, so the mean counts.
     INFO("load " << load << " lost " << lost / runs);
     CHECK(lost / runs < (load < 50 ? 0.5 : load < 500 ? 0.2 : 0.05));
   }
