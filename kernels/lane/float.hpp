@@ -16,7 +16,13 @@
 #include <xsimd/xsimd.hpp>
 #endif
 
+// In the scalar kernels, which run where nothing wider does, a function is a call where the
+// compiler sees fit: inlined by force they would be the largest of all, by twice.
+#if defined(MW_ISA_SCALAR)
+#define MW_INLINE inline
+#else
 #define MW_INLINE inline __attribute__((always_inline))
+#endif
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
