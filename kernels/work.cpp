@@ -210,14 +210,16 @@ void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
   const auto loop_rows = static_cast<std::size_t>(t.joint_trees.loop_rows) * lanes;
   c.take(w.loop_floor, loop_rows), c.take(w.loop_target, loop_rows);
   c.take(w.loop_impulse, loop_rows);
-  if (closures == 0 && !t.has_contacts) return;
+  const bool met = t.has_contacts || t.joint_trees.beside > 0;
+  if (closures == 0 && !met) return;
   take(w.pending, twist);
   c.take(w.pending_edges, edges * bytes.pending);
   c.take(w.path, edges);
-  if (!t.has_contacts) return;
+  if (!met) return;
   take_factors(w.of_contacts);
-  take(w.compliance, articulated), take(w.inv_tree_mass, 1);
+  take(w.compliance, articulated);
   c.take(w.touched, static_cast<std::size_t>(t.bodies) + 1);
+  if (t.has_contacts) take(w.inv_tree_mass, 1);
 }
 
 void carve(const Constants& t, Work& w, Carver& c) {

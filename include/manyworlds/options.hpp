@@ -81,7 +81,9 @@ struct ContactOptions {
 // How tgs_soft solves joints. `sweep` solves them one after the other in every substep. `tree`
 // solves all joints of a tree as one system, so that light bodies hold heavy loads. A tree consists
 // of bodies connected by ball, hinge, slider, fixed and wheel joints. Up to four joints without
-// drives or limits may close loops, unless a joint of the tree can break. Other joints are swept.
+// drives or limits may close loops, unless a joint of the tree can break. Distance joints, pulleys
+// and targets on a tree act between its solves, with the mass of the whole tree. Other joints are
+// swept. `manyworlds plan` counts them.
 enum class JointMethod { sweep, tree };
 const char* to_string(JointMethod method);
 

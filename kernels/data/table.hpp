@@ -80,8 +80,8 @@ struct JointSolver {
 // have acted on.
 template <class Real>
 struct TreeRound {
-  Stage<Real> contacts;        // the first of a pass
-  Stage<Real> contacts_again;  // the others
+  Stage<Real> rows, rows_again;          // beside trees: the first of a pass, and the others
+  Stage<Real> contacts, contacts_again;  // after those
   Stage<Real> trees;
 };
 

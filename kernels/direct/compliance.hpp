@@ -44,10 +44,8 @@ MW_INLINE SpatialCompliance select(Mask m, const SpatialCompliance& a, const Spa
           select(m, a.linear, b.linear)};
 }
 MW_INLINE PlanarCompliance select(Mask m, const PlanarCompliance& a, const PlanarCompliance& b) {
-  return {select(m, a.angular, b.angular),
-          select(m, a.mixed, b.mixed),
-          {select(m, a.linear.xx, b.linear.xx), select(m, a.linear.xy, b.linear.xy),
-           select(m, a.linear.yy, b.linear.yy)}};
+  return {select(m, a.angular, b.angular), select(m, a.mixed, b.mixed),
+          select(m, a.linear, b.linear)};
 }
 
 MW_INLINE Twist mul(const SpatialCompliance& c, const Wrench& f) {

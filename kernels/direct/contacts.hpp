@@ -13,23 +13,6 @@ class TreeContacts {
  public:
   TreeContacts(const Constants& t, Work& w) : t_(t), w_(w) {}
 
-  // Marks the bodies of trees that contacts are on, and those that they hang on; whether there are
-  // any.
-  bool find_touched() const {
-    std::uint32_t* touched = w_.direct.touched;
-    for (int b = 0; b <= t_.bodies; ++b) touched[b] = 0;
-    std::uint32_t some = 0;
-    for_each_end([&](int body, std::uint32_t lanes) {
-      const std::uint32_t held = w_.direct.held[body] & lanes;
-      touched[body] |= held, some |= held;
-    });
-    for (int i = t_.joint_trees.edges - 1; some != 0 && i >= 0; --i) {
-      const TreeEdge& edge = t_.joint_trees.edge[i];
-      if (!edge.prescribed) touched[edge.parent] |= touched[edge.child];
-    }
-    return some != 0;
-  }
-
   // Effective masses. kTree: as parts of trees give way, else as free bodies do.
   template <bool kTree>
   void weigh() const {
@@ -44,23 +27,16 @@ class TreeContacts {
     });
   }
 
-  template <Pass kPass>
-  void solve(const TreeFactors<S>& factors) const {
-    solve_all<kPass>(factors);
-  }
-
-  // What they did in a substep, for restitution.
-  void accumulate_bounces() const {
-    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
-      accumulate_bounce(s, bounce_at<S, N>(list, i), t_.has_friction);
+  // visit(body, lanes) for the bodies that move at both ends of all blocks.
+  template <class Visit>
+  MW_INLINE void for_each_end(Visit visit) const {
+    for_each_block<S>(w_, [&]<int N, class A>(const SidedBlock<S, N, A>& s, int, BlockList&) {
+      for_each_end_of(s, visit);
     });
   }
 
- private:
   template <Pass kPass>
-  void solve_all(const TreeFactors<S>& factors) const {
-    const TreeResponse<S, kDense> response(t_, w_, factors);
-    response.open();
+  void solve(const TreeResponse<S, kDense>& response) const {
     for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&) {
       if (meets_tree(s)) {
         TreeVelocities<S, A, kDense> v(response, w_, s);
@@ -74,6 +50,15 @@ class TreeContacts {
       if (t_.has_resistance) resist_all(response);
     }
   }
+
+  // What they did in a substep, for restitution.
+  void accumulate_bounces() const {
+    for_each_block<S>(w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int i, BlockList& list) {
+      accumulate_bounce(s, bounce_at<S, N>(list, i), t_.has_friction);
+    });
+  }
+
+ private:
   void resist_all(const TreeResponse<S, kDense>& response) const {
     for_each_resistance<S>(
         w_, [&]<int N, class A>(SidedBlock<S, N, A>& s, int, BlockList&, Resistance<S>& r) {
@@ -82,17 +67,11 @@ class TreeContacts {
           v.store(s);
         });
   }
-  // visit(body, lanes) for the bodies that move at both ends of a block, or of all blocks.
+  // Of one block.
   template <int N, class A, class Visit>
   MW_INLINE void for_each_end_of(const SidedBlock<S, N, A>& s, Visit visit) const {
     for_each_body<S, kDense>(w_, s.offset_b, s.body_b, s.mask, visit);
     if constexpr (A::kMoves) for_each_body<S, kDense>(w_, s.offset_a, s.body_a, s.mask, visit);
-  }
-  template <class Visit>
-  MW_INLINE void for_each_end(Visit visit) const {
-    for_each_block<S>(w_, [&]<int N, class A>(const SidedBlock<S, N, A>& s, int, BlockList&) {
-      for_each_end_of(s, visit);
-    });
   }
   template <int N, class A>
   MW_INLINE bool meets_tree(const SidedBlock<S, N, A>& s) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/direct/contacts.hpp"
+#include "kernels/direct/rows_beside.hpp"
 #include "kernels/direct/solve.hpp"
 #include "kernels/direct/stiffness.hpp"
 #include "kernels/direct/tree_compliances.hpp"
@@ -32,7 +33,7 @@ struct DirectPasses {
     if (w.direct.located != w.substep) finder.refresh_parts();
     finder.template find<true>();
     w.direct.is_stiff = GeometricStiffness<S>(t, g, w).find();
-    if (w.direct.is_stiff && t.has_contacts) TreeContacts<S, kDense>(t, w).find_touched();
+    if (w.direct.is_stiff) find_touched(t, g, w);
     biased(t, g, w, true).run();
   }
   static void bias_again(const Constants& t, const Group& g, kernels::Scratch* scratch) {
@@ -50,26 +51,44 @@ struct DirectPasses {
     relaxed(t, g, work_of(scratch)).run_again();
   }
 
-  // Contacts meet trees where those were when the substep began, and in the relaxing pass where it
-  // has taken them. That is where the next substep begins: effective masses hold for both, unless
-  // limits and drives tell the solves apart.
+  // Rows beside trees, and then contacts, meet trees where those were when the substep began, and
+  // in the relaxing pass where it has taken them. That is where the next substep begins: effective
+  // masses hold for both, unless limits and drives tell the solves apart.
+  template <Pass kPass, bool kAgain>
+  static void open(const Constants& t, const Group& g, Work& w) {
+    TreeFactors<S> factors = factors_in<S>(w.direct.of_solves);
+    if (find_touched(t, g, w)) {
+      const bool first = kPass == Pass::bias && !kAgain && w.substep == 0;
+      if (first && t.has_contacts) find_tree_masses(t, g, w);
+      const TreeSolve<S, kDense> solve =
+          kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w);
+      const bool moved = first || (kPass == Pass::relax && !kAgain);
+      const bool weighs = moved || t.joint_trees.bounded;
+      if (weighs && t.joint_trees.beside > 0) {
+        const TreeFactors<S> yielding = solve.factor_without_bounds();
+        TreeCompliances<S>(t, w, yielding).find();
+        RowsBeside<S, kDense>(t, g, w).weigh(yielding);
+      }
+      factors = solve.factor_for_contacts();
+      if (weighs) {
+        TreeCompliances<S>(t, w, factors).find();
+        if (t.has_contacts) TreeContacts<S, kDense>(t, w).template weigh<true>();
+      }
+    }
+    w.direct.met = {reinterpret_cast<unsigned char*>(factors.edge), factors.inertia};
+    response(t, w).open();
+  }
+  template <Pass kPass, bool kAgain>
+  static void rows(const Constants& t, const Group& g, kernels::Scratch* scratch) {
+    Work& w = work_of(scratch);
+    open<kPass, kAgain>(t, g, w);
+    RowsBeside<S, kDense>(t, g, w).template solve<kPass>(response(t, w));
+  }
   template <Pass kPass, bool kAgain>
   static void contacts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    const TreeContacts<S, kDense> contacts(t, w);
-    TreeFactors<S> factors = factors_in<S>(w.direct.of_solves);
-    if (contacts.find_touched()) {
-      const bool first = kPass == Pass::bias && !kAgain && w.substep == 0;
-      if (first) find_tree_masses(t, g, w);
-      factors =
-          (kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w)).factor_for_contacts();
-      const bool moved = first || (kPass == Pass::relax && !kAgain);
-      if (moved || t.joint_trees.bounded) {
-        TreeCompliances<S>(t, w, factors).find();
-        contacts.template weigh<true>();
-      }
-    }
-    contacts.template solve<kPass>(factors);
+    if (t.joint_trees.beside == 0) open<kPass, kAgain>(t, g, w);
+    TreeContacts<S, kDense>(t, w).template solve<kPass>(response(t, w));
   }
   // What the relaxing pass did counts for restitution.
   template <bool kAgain>
@@ -87,12 +106,36 @@ struct DirectPasses {
     return {begin,
             bias,
             relax,
-            {contacts<Pass::bias, false>, contacts<Pass::bias, true>, bias_again},
-            {relax_contacts<false>, relax_contacts<true>, relax_again},
+            {rows<Pass::bias, false>, rows<Pass::bias, true>, contacts<Pass::bias, false>,
+             contacts<Pass::bias, true>, bias_again},
+            {rows<Pass::relax, false>, rows<Pass::relax, true>, relax_contacts<false>,
+             relax_contacts<true>, relax_again},
             weigh_alone};
   }
 
  private:
+  // Marks the bodies of trees that contacts or rows are on, and those that they hang on; whether
+  // there are any.
+  static bool find_touched(const Constants& t, const Group& g, Work& w) {
+    if (!t.has_contacts && t.joint_trees.beside == 0) return false;
+    std::uint32_t* touched = w.direct.touched;
+    for (int b = 0; b <= t.bodies; ++b) touched[b] = 0;
+    std::uint32_t some = 0;
+    const auto touch = [&](int body, std::uint32_t lanes) {
+      const std::uint32_t held = w.direct.held[body] & lanes;
+      touched[body] |= held, some |= held;
+    };
+    if (t.has_contacts) TreeContacts<S, kDense>(t, w).for_each_end(touch);
+    if (t.joint_trees.beside > 0) RowsBeside<S, kDense>(t, g, w).for_each_end(touch);
+    for (int i = t.joint_trees.edges - 1; some != 0 && i >= 0; --i) {
+      const TreeEdge& edge = t.joint_trees.edge[i];
+      if (!edge.prescribed) touched[edge.parent] |= touched[edge.child];
+    }
+    return some != 0;
+  }
+  static TreeResponse<S, kDense> response(const Constants& t, Work& w) {
+    return {t, w, factors_in<S>(w.direct.met)};
+  }
   static TreeSolve<S, kDense> biased(const Constants& t, const Group& g, Work& w, bool first) {
     return {t, g, w, w.substep, w.direct.is_stiff, true, first};
   }

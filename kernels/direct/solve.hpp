@@ -3,8 +3,7 @@
 // (Featherstone 2008, 7.3) in the coordinates of free bodies: what hangs on a joint is felt at its
 // anchor as an inertia and a load, from which the coordinates along which the joint gives way are
 // eliminated. Nothing fills in, whatever the branching, and nothing is warm started. All numbers
-// are changes of velocity, so that rounding is of what the joints do, and linear momentum is kept
-// as well.
+// are changes of velocity: rounding is of what joints do, and linear momentum is kept.
 //
 // Lanes in which a joint does not hold cut the tree there: the child is a root in those.
 #pragma once
@@ -44,12 +43,8 @@ class TreeSolve {
 
   // Until the active sets stay as they are.
   void run() const {
-    bool turns = false;
-    if (stiffened_) {
-      turns = turning_.begin();
-    } else {
-      turning_.clear();
-    }
+    const bool turns = stiffened_ && turning_.begin();
+    if (!stiffened_) turning_.clear();
     if (first_) d_.firm = kAllLanes;
     solve_in(kAllLanes, turns && !loops_.any());  // what closes loops knows of no mean
   }
@@ -62,14 +57,11 @@ class TreeSolve {
   // rigidly as they do in the last solve. Where one of them has given way to the contacts of this
   // substep they keep their impulses instead, which takes back what contacts pushed against in
   // vain: else that feeds energy.
-  TreeFactors<S> factor_for_contacts() const {
-    if (d_.firm == kAllLanes) {
-      factor_for_solves();
-      return factors_;
-    }
-    const TreeFactors<S> own = factors_in<S>(d_.of_contacts);
-    eliminate_all(own, d_.firm);
-    return own;
+  TreeFactors<S> factor_for_contacts() const { return factor_in(d_.firm); }
+  // And for the masses of rows beside trees. One that pulls a joint off its limit, or overcomes its
+  // drive, would do far too much by what these hold.
+  TreeFactors<S> factor_without_bounds() const {
+    return factor_in(t_.joint_trees.bounded ? 0 : kAllLanes);
   }
 
   // Active sets to begin a step with.
@@ -119,6 +111,15 @@ class TreeSolve {
     }
   }
 
+  TreeFactors<S> factor_in(std::uint32_t firm) const {
+    if (firm == kAllLanes) {
+      factor_for_solves();
+      return factors_;
+    }
+    const TreeFactors<S> own = factors_in<S>(d_.of_contacts);
+    eliminate_all(own, firm);
+    return own;
+  }
   // Unless there are some of this place and of these active sets.
   void factor_for_solves() const {
     bool same = d_.factored.place == place_ && d_.factored.stiffened == stiffened_;

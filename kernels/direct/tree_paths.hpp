@@ -62,6 +62,18 @@ class TreePaths {
     add_in_lanes<kTwistRowsOf<S>>(row(d_.pending, body), p, lanes);
   }
 
+  // Takes back all that impulses on a body have left on its way to the root.
+  void clear(int body) const {
+    const WrenchOf<S> none{zero_of<Ang>(), zero_of<Vec>()};
+    for (int i = edge_of(body);; i = edge_of(body)) {
+      store(row(d_.pending, body), none);
+      if (i < 0) return;
+      pending(i) = {};
+      if (t_.joint_trees.edge[i].prescribed) return;
+      body = t_.joint_trees.edge[i].parent;
+    }
+  }
+
   // How a body's velocity about its centre of mass has changed.
   TwistOf<S> change_of(int body) const {
     int steps = 0;

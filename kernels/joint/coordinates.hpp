@@ -161,7 +161,7 @@ template <class S, bool kDense, Pass kPass>
 MW_INLINE void solve(const Constants& t, const Group& g, const Work& w, const JointPart& part,
                      const Joint& constants, Row<S>& s, PartVelocities<S, kDense>& v) {
   if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
-  solve_row<S, kDense, kPass>(t, g, w, part, constants, s, v);
+  solve_placed<S, kDense, kPass>(t, g, w, part, constants, s, v);
 }
 
 // Of both sides of a joint in the state; the world is still.

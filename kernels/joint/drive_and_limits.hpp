@@ -49,13 +49,14 @@ MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const 
                                       const Joint& constants, const Row<S>& s, Float speed,
                                       Float curved) {
   const Float zero(Real(0)), k = Float::load(s.k), most = constants.max_impulse;
+  const Float k_soft = k_of_springs(part, s);
   RowImpulses out{zero, zero, zero};
   // v + lag + give p = 0 of a drive
   Float give = zero, lag = zero;
   if (part.drive) {
     const DriveTarget target = target_of(g, part, constants);
     const auto& soft = constants.drive_soft;
-    give = fma(k, soft.rho, Float(soft.gamma));
+    give = fma(k_soft, soft.rho, Float(soft.gamma));
     lag = fms(Float::load(s.driven) - target.position, soft.bias_rate,
               target.speed * Float(constants.speed_share));
     out.drive = clamp(-((speed + lag) * inverse_or_zero(k + give)), -most, most);
@@ -69,7 +70,8 @@ MW_INLINE RowImpulses drive_and_limit(const Constants& t, const Group& g, const 
       error = fma(curved, sign, select(within, error, gap * Float(by.bias_rate)));
       const Float of_spring(by.gamma);
       const bool hard = part.drive && !part.soft_limit;
-      soft = select(within, zero, hard ? of_spring : fma(k, by.rho, of_spring));
+      const Float weighs = part.soft_limit ? k_soft : k;
+      soft = select(within, zero, hard ? of_spring : fma(weighs, by.rho, of_spring));
     }
     const Float reached = fma(k, out.drive, speed) * sign + error;
     const Mask acts = reached < zero;
@@ -116,8 +118,9 @@ MW_INLINE Float distance_curvature(const Constants& t, const Work& w, const Join
 }
 
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve_row(const Constants& t, const Group& g, const Work& w, const JointPart& part,
-                         const Joint& constants, Row<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve_placed(const Constants& t, const Group& g, const Work& w,
+                            const JointPart& part, const Joint& constants, Row<S>& s,
+                            PartVelocities<S, kDense>& v) {
   const RowImpulses before{Float::load(s.impulse[0]), Float::load(s.impulse[1]),
                            Float::load(s.impulse[2])};
   if constexpr (kPass == Pass::warm_start) {

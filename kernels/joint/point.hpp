@@ -91,12 +91,12 @@ MW_INLINE void apply_held(const JointPart& part, const Rows& s, typename S::Vec 
   if (holds_rotation(part)) apply_moments<S, kDense>(s, moment_of(s.reaction, p), v);
 }
 
+// Where the bodies are already known to be.
 template <class S, bool kDense, Pass kPass>
-MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointPart& part,
-                     const Joint& constants, PointRows<S>& s, PartVelocities<S, kDense>& v) {
+MW_INLINE void solve_placed(const Constants&, const Group&, const Work& w, const JointPart& part,
+                            const Joint& constants, PointRows<S>& s, PartVelocities<S, kDense>& v) {
   using Vec = typename S::Vec;
   using Mass = typename PointMass<S>::Type;
-  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
   if constexpr (kPass == Pass::warm_start) {
     apply_held<S, kDense>(part, s, load_as<Vec>(s.impulse[0]), load_as<Vec>(s.arm_a[0]),
                           load_as<Vec>(s.arm_b[0]), v);
@@ -123,6 +123,12 @@ MW_INLINE void solve(const Constants&, const Group&, const Work& w, const JointP
   }
   store(s.impulse[0], after);
   apply_held<S, kDense>(part, s, after - before, arm_a, arm_b, v);
+}
+template <class S, bool kDense, Pass kPass>
+MW_INLINE void solve(const Constants& t, const Group& g, const Work& w, const JointPart& part,
+                     const Joint& constants, PointRows<S>& s, PartVelocities<S, kDense>& v) {
+  if constexpr (kPass == Pass::relax) refresh<S, kDense, true>(w, part, constants, s);
+  solve_placed<S, kDense, kPass>(t, g, w, part, constants, s, v);
 }
 
 }  // namespace manyworlds::MW_KERNEL_NAMESPACE

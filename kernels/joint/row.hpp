@@ -26,7 +26,13 @@ struct alignas(64) Row : AnchoredRows<S> {
   Real value[kLanes];
   Real driven[kLanes];  // the value of the bias pass
   Real k[kLanes];
+  Real free_k[kLanes];  // of a row that nothing holds: K of free bodies, whatever trees they are of
 };
+// By which springs of a frequency are as stiff as if their bodies were free.
+template <class S>
+MW_INLINE Float k_of_springs(const JointPart& part, const Row<S>& s) {
+  return Float::load(part.beside ? s.free_k : s.k);
+}
 
 template <class S, class Velocities>
 MW_INLINE Float speed_of(const Row<S>& s, const Velocities& v) {
@@ -53,7 +59,8 @@ MW_INLINE void weigh_row(Row<S>& s) {
   const Vec linear_a = load_as<Vec>(s.linear_a[0]), linear_b = load_as<Vec>(s.linear_b[0]);
   const Float of_spin = dot(a, apply(inertia_of(s.a), a)) + dot(b, apply(inertia_of(s.b), b));
   const Float of_b = dot(linear_b, linear_b) * Float::load(s.b.inv_mass);
-  (of_spin + fma(dot(linear_a, linear_a), Float::load(s.a.inv_mass), of_b)).store(s.k);
+  const Float k = of_spin + fma(dot(linear_a, linear_a), Float::load(s.a.inv_mass), of_b);
+  k.store(s.k), k.store(s.free_k);
 }
 
 // lambda' - lambda of a soft row that is to have a speed of 0, before any clamp.

@@ -11,6 +11,9 @@ struct Sym2 {  // symmetric
 MW_INLINE Vec2 mul(const Sym2& s, Vec2 v) {
   return {fma(s.xy, v.y, s.xx * v.x), fma(s.yy, v.y, s.xy * v.x)};
 }
+MW_INLINE Sym2 select(Mask m, const Sym2& a, const Sym2& b) {
+  return {select(m, a.xx, b.xx), select(m, a.xy, b.xy), select(m, a.yy, b.yy)};
+}
 
 // 1 / a, and 0 for a that is not positive: rows that move nothing get no impulse.
 MW_INLINE Float inverse_or_zero(Float a) {

@@ -91,12 +91,12 @@ std::string need_of_loops(const Scene& scene, const SceneTrees& trees) {
 }
 
 // Loads that go down through light bodies.
-std::string need_of_masses(const Scene& scene, const std::vector<int>& trees) {
-  std::map<int, std::pair<double, double>> range;  // of a tree, kg
-  for (std::size_t b = 0; b < trees.size(); ++b) {
-    if (trees[b] < 0) continue;
+std::string need_of_masses(const Scene& scene, const SceneTrees& trees) {
+  std::map<int, std::pair<double, double>> range;  // of what hangs together, kg
+  for (std::size_t b = 0; b < trees.hangs_with.size(); ++b) {
+    if (trees.hangs_with[b] < 0 || scene.bodies[b].motion != Motion::dynamic) continue;
     const double mass = mass_properties(scene, scene.bodies[b]).mass;
-    const auto [at, fresh] = range.try_emplace(trees[b], mass, mass);
+    const auto [at, fresh] = range.try_emplace(trees.hangs_with[b], mass, mass);
     at->second.first = std::min(at->second.first, mass);
     at->second.second = std::max(at->second.second, mass);
     const double ratio = at->second.second / at->second.first;
@@ -146,9 +146,8 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   }
   for (const Scene& scene : extremes) {
     for (const std::string& why :
-         {need_of_loops(scene, trees), need_of_levers(scene, in_tree),
-          need_of_masses(scene, trees.of_body), need_of_light_links(scene, trees),
-          need_of_drives(scene, trees)}) {
+         {need_of_loops(scene, trees), need_of_levers(scene, in_tree), need_of_masses(scene, trees),
+          need_of_light_links(scene, trees), need_of_drives(scene, trees)}) {
       if (!why.empty()) return at_once(why);
     }
   }

@@ -40,7 +40,7 @@ class JointTreeBuilder {
       joint.body_a = plan.parts[i].what.body_a, joint.body_b = plan.parts[i].what.body_b;
     }
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-      if (joints_[j].parts.empty()) continue;
+      if (!trees_.has_joint[j] || joints_[j].parts.empty()) continue;
       for (const int body : {joints_[j].body_a, joints_[j].body_b}) {
         if (!prescribed(body)) at_[static_cast<std::size_t>(body)].push_back(static_cast<int>(j));
       }
@@ -52,9 +52,7 @@ class JointTreeBuilder {
     for (int b = 0; b < bodies; ++b) {
       if (prescribed(b) || component_[static_cast<std::size_t>(b)] >= 0) continue;
       const std::vector<int> component = gather(b);
-      const auto& joints = at_[static_cast<std::size_t>(b)];
-      if (joints.empty()) continue;
-      if (trees_.has_joint[static_cast<std::size_t>(joints.front())]) grow(component);
+      if (!at_[static_cast<std::size_t>(b)].empty()) grow(component);
     }
     finish(plan_.trees_of_joints);
   }
@@ -83,6 +81,18 @@ class JointTreeBuilder {
         solve_at_once(plan_.parts[static_cast<std::size_t>(part)]);
         ++counts.parts;
       }
+    }
+    find_beside(trees);
+  }
+  void find_beside(PlanJointTrees& trees) const {
+    std::vector<bool> of_tree(plan_.bodies.size() + 1, false);  // the last: the world
+    for (const int body : trees.bodies) of_tree[static_cast<std::size_t>(body)] = true;
+    for (PlanPart& part : plan_.parts) {
+      kernels::JointPart& what = part.what;
+      if (what.direct || what.force) continue;
+      what.beside = of_tree[static_cast<std::size_t>(what.body_a)] ||
+                    of_tree[static_cast<std::size_t>(what.body_b)];
+      trees.counts.beside += what.beside ? 1 : 0;
     }
   }
   // The world and kinematic bodies move as they are told.
@@ -228,7 +238,7 @@ class JointTreeBuilder {
   PlanData& plan_;
   std::vector<TreeJoint> joints_;
   SceneTrees trees_;
-  std::vector<std::vector<int>> at_;  // [body] joints
+  std::vector<std::vector<int>> at_;  // [body] joints of trees
   std::vector<int> component_;        // [body] its first body
   std::vector<bool> placed_;          // [body] in its tree
   std::vector<bool> seen_;            // [joint] in its tree, or closes a loop

@@ -18,6 +18,8 @@ struct SceneTrees {
   // then what hangs together would be flung about.
   std::vector<double> slack;
   std::vector<int> of_body;          // [body] which tree, by one of its bodies; -1: none
+  std::vector<int> hangs_with;       // [body] trees and all that joints hang on them; -1: none
+  std::vector<int> joints_hanging;   // [body] joints of these
   std::vector<int> joints_with;      // [body] joints of its tree
   std::vector<int> joints_in_loops;  // [body] of those the ones that are part of loops
   std::vector<double> inverse_arms;  // [body] 1/m, their sum over these

@@ -119,6 +119,36 @@ std::vector<bool> on_loops(const Scene& scene) {
   return left;
 }
 
+// What joints of any type connect with trees, of which the tree's bodies are known.
+void find_hanging(const Scene& scene, SceneTrees& out) {
+  struct Hanging {
+    int joints = 0;
+    bool has_tree = false;
+  };
+  const std::size_t bodies = scene.bodies.size();
+  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
+  const auto index = [](BodyId body) { return static_cast<std::size_t>(body.index()); };
+  DisjointSets sets(bodies);
+  for (const Joint& joint : scene.joints) {
+    if (moves(joint.body_a) && moves(joint.body_b)) {
+      sets.join(index(joint.body_a), index(joint.body_b));
+    }
+  }
+  std::vector<Hanging> of(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    if (out.of_body[i] >= 0) of[sets.find(i)].has_tree = true;
+  }
+  for (const Joint& joint : scene.joints) {
+    const BodyId moving = moves(joint.body_a) ? joint.body_a : joint.body_b;
+    if (moves(moving)) ++of[sets.find(index(moving))].joints;
+  }
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const std::size_t by = sets.find(i);
+    out.hangs_with.push_back(of[by].has_tree ? static_cast<int>(by) : -1);
+    out.joints_hanging.push_back(of[by].joints);
+  }
+}
+
 }  // namespace
 
 SceneTrees trees_of(const Scene& scene) {
@@ -132,10 +162,12 @@ SceneTrees trees_of(const Scene& scene) {
   const std::size_t bodies = scene.bodies.size();
   const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
   const auto index = [](BodyId body) { return static_cast<std::size_t>(body.index()); };
-  const auto held = [&](const Joint& joint) { return moves(joint.body_a) || moves(joint.body_b); };
+  const auto held = [&](const Joint& joint) {
+    return fits(joint) && (moves(joint.body_a) || moves(joint.body_b));
+  };
   DisjointSets together(bodies), held_together(bodies + 1);  // with all that does not move as one
   for (const Joint& joint : scene.joints) {
-    if (moves(joint.body_a) && moves(joint.body_b)) {
+    if (fits(joint) && moves(joint.body_a) && moves(joint.body_b)) {
       together.join(index(joint.body_a), index(joint.body_b));
     }
   }
@@ -147,7 +179,6 @@ SceneTrees trees_of(const Scene& scene) {
     for (const Joint& joint : scene.joints) {
       if (!held(joint) || has_bounds(joint) != bounded) continue;
       Component& component = of[root(joint)];
-      component.fits &= fits(joint);
       ++component.joints;
       const std::size_t a = moves(joint.body_a) ? index(joint.body_a) : bodies;
       const std::size_t b = moves(joint.body_b) ? index(joint.body_b) : bodies;
@@ -182,6 +213,7 @@ SceneTrees trees_of(const Scene& scene) {
     out.joints_in_loops.push_back(component.in_loops);
     out.inverse_arms.push_back(component.inverse_arms);
   }
+  find_hanging(scene, out);
   return out;
 }
 

@@ -26,6 +26,20 @@ void choose_tree_stages(PlanData& plan) {
                                      : "solved by the joint-space inertia")};
 }
 
+// How many of the scene's joints are solved in which way.
+std::string how_joints_are_solved(const PlanData& plan) {
+  int at_once = 0, beside = 0, swept = 0, last = -1;
+  for (const PlanPart& part : plan.parts) {
+    if (part.joint == last) continue;
+    last = part.joint;
+    ++(part.what.direct ? at_once : part.what.beside ? beside : swept);
+  }
+  std::string out = std::to_string(at_once) + " solved at once";
+  if (beside > 0) out += ", " + std::to_string(beside) + " between those solves";
+  if (swept > 0) out += ", " + std::to_string(swept) + " swept";
+  return out;
+}
+
 }  // namespace
 
 void choose_stages(PlanData& plan) {
@@ -60,8 +74,9 @@ void choose_stages(PlanData& plan) {
                    : "masked all-pairs");
   set(StepStage::collide, contacts, touch);
   set(StepStage::joints, joints,
-      plan.has(Feature::joints) && !joints ? "springs are forces of the integrator"
-                                           : why(Feature::joints));
+      plan.has(Feature::joints) && !joints    ? "springs are forces of the integrator"
+      : plan.trees_of_joints.counts.edges > 0 ? how_joints_are_solved(plan)
+                                              : why(Feature::joints));
   set(StepStage::warm_start, substeps, substeps ? some : touch);
 
   const std::string solver = to_string(options.solver.method);

@@ -68,7 +68,7 @@ std::string need_of_drives(const Scene& scene, const SceneTrees& trees) {
     if (drive == nullptr || std::holds_alternative<WheelJoint>(joint.type)) continue;
     const bool a_moves = joint.body_a && scene.at(joint.body_a).motion == Motion::dynamic;
     const BodyId moving = a_moves ? joint.body_a : joint.body_b;
-    if (trees.joints_with[static_cast<std::size_t>(moving.index())] < 2) continue;
+    if (trees.joints_hanging[static_cast<std::size_t>(moving.index())] < 2) continue;
     const double stiffness = stiffness_of(scene, JointId(static_cast<int>(j)), *drive, h);
     if (stiffness <= kMost) continue;
     if (drive->spring) {

@@ -21,8 +21,12 @@ std::optional<Drive> drive_of(const Joint& joint) {
   if (const auto* wheel = std::get_if<WheelJoint>(&joint.type)) {
     return Drive{0, 0, wheel->suspension};
   }
+  if (const auto* distance = std::get_if<DistanceJoint>(&joint.type)) {
+    return Drive{*distance->length, 0, distance->spring};
+  }
   return std::nullopt;
 }
+bool is_distance(const Joint& joint) { return std::holds_alternative<DistanceJoint>(joint.type); }
 bool is_wheel(const Joint& joint) { return std::holds_alternative<WheelJoint>(joint.type); }
 bool is_slider(const Joint& joint) { return std::holds_alternative<SliderJoint>(joint.type); }
 double twist_between(const Quat& a, const Quat& b) {
@@ -103,6 +107,14 @@ Eigen::VectorXd JointTwin::about(const Joint& joint, const Vec3& d) const {
   add_spin(j, joint.body_b, d, 1), add_spin(j, joint.body_a, d, -1);
   return j;
 }
+// Along the line from one anchor to the other.
+Eigen::VectorXd JointTwin::between(const Joint& joint) const {
+  Eigen::VectorXd j = Eigen::VectorXd::Zero(kSize * static_cast<int>(bodies_.size()));
+  const Vec3 a = anchor(joint.body_a, joint.frame_a), b = anchor(joint.body_b, joint.frame_b);
+  const Vec3 d = (b - a).normalized();
+  add_point(j, joint.body_b, b, d, 1), add_point(j, joint.body_a, a, d, -1);
+  return j;
+}
 // Along a direction that A carries, at the anchor of B.
 Eigen::VectorXd JointTwin::along(const Joint& joint, const Vec3& d) const {
   Eigen::VectorXd j = Eigen::VectorXd::Zero(kSize * static_cast<int>(bodies_.size()));
@@ -116,6 +128,7 @@ std::vector<JointTwin::Row> JointTwin::rows() const {
   for (const Joint& joint : scene_.joints) {
     const Vec3 a = anchor(joint.body_a, joint.frame_a), b = anchor(joint.body_b, joint.frame_b);
     const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
+    if (is_distance(joint)) continue;  // a spring
     const bool wheel = is_wheel(joint);
     const bool fixed = std::holds_alternative<FixedJoint>(joint.type);
     if (wheel || is_slider(joint)) {
@@ -159,8 +172,9 @@ std::vector<Eigen::VectorXd> JointTwin::drive_axes() const {
   for (const Joint& joint : scene_.joints) {
     if (!drive_of(joint)) continue;
     const Quat qa = axes(joint.body_a, joint.frame_a);
-    out.push_back(slides(joint) ? along(joint, qa * Vec3::UnitX())
-                                : about(joint, qa * Vec3::UnitZ()));
+    out.push_back(is_distance(joint) ? between(joint)
+                  : slides(joint)    ? along(joint, qa * Vec3::UnitX())
+                                     : about(joint, qa * Vec3::UnitZ()));
   }
   return out;
 }
@@ -172,10 +186,12 @@ void JointTwin::find_drives(double dt) {
     const std::optional<Drive> drive = drive_of(joint);
     if (!drive) continue;
     const Quat qa = axes(joint.body_a, joint.frame_a), qb = axes(joint.body_b, joint.frame_b);
+    const Vec3 apart = anchor(joint.body_b, joint.frame_b) - anchor(joint.body_a, joint.frame_a);
     double x;
-    if (slides(joint)) {
-      x = (qa * Vec3::UnitX())
-              .dot(anchor(joint.body_b, joint.frame_b) - anchor(joint.body_a, joint.frame_a));
+    if (is_distance(joint)) {
+      x = apart.norm();
+    } else if (slides(joint)) {
+      x = (qa * Vec3::UnitX()).dot(apart);
     } else {
       x = twist_between(qa, qb);
     }

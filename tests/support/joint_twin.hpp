@@ -19,9 +19,9 @@ struct TwinBody {
   Vec3 swept = Vec3::Zero();    // rad, dt times the mean of its angular velocities in the motion
 };
 
-// Ball joints, hinges, sliders, fixed and wheel joints between bodies that begin as the scene says,
-// with drives that are springs and hard limits of ball joints; neither other limits nor bounds of
-// drives.
+// Ball joints, hinges, sliders, fixed and wheel joints, and springs of given lengths, between
+// bodies that begin as the scene says, with drives that are springs and hard limits of ball joints;
+// neither other limits nor bounds of drives.
 class JointTwin {
  public:
   explicit JointTwin(const Scene& scene);
@@ -59,6 +59,7 @@ class JointTwin {
                  double sign) const;
   void add_spin(Eigen::VectorXd& j, BodyId body, const Vec3& d, double sign) const;
   Eigen::VectorXd about(const Joint& joint, const Vec3& d) const;
+  Eigen::VectorXd between(const Joint& joint) const;
   Eigen::VectorXd along(const Joint& joint, const Vec3& d) const;
   std::vector<Eigen::VectorXd> drive_axes() const;
   void find_drives(double dt);
