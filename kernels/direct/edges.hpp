@@ -62,8 +62,8 @@ struct alignas(64) BallFactors {
 template <>
 struct BallFactors<Planar> {};  // a hinge there
 
-// How the edges of trees give way, and what hangs on them: of the solves, or of what contacts do to
-// trees, which plans with contacts alone have (solve.hpp).
+// How the edges of trees give way, and what hangs on them: of the solves, or of what meets trees
+// between them (solve.hpp).
 template <class S>
 struct EdgeFactors {
   DofFactors<S> slide, turn;

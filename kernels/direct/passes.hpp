@@ -70,10 +70,10 @@ struct DirectPasses {
         RowsBeside<S, kDense>(t, g, w).weigh(yielding);
       }
       factors = solve.factor_for_contacts();
-      if (weighs) {
+      if (weighs && (t.joint_trees.bounded || t.joint_trees.beside == 0)) {
         TreeCompliances<S>(t, w, factors).find();
-        if (t.has_contacts) TreeContacts<S, kDense>(t, w).template weigh<true>();
       }
+      if (weighs && t.has_contacts) TreeContacts<S, kDense>(t, w).template weigh<true>();
     }
     w.direct.met = {reinterpret_cast<unsigned char*>(factors.edge), factors.inertia};
     response(t, w).open();
@@ -117,7 +117,7 @@ struct DirectPasses {
   // Marks the bodies of trees that contacts or rows are on, and those that they hang on; whether
   // there are any.
   static bool find_touched(const Constants& t, const Group& g, Work& w) {
-    if (!t.has_contacts && t.joint_trees.beside == 0) return false;
+    if (!are_met(t)) return false;
     std::uint32_t* touched = w.direct.touched;
     for (int b = 0; b <= t.bodies; ++b) touched[b] = 0;
     std::uint32_t some = 0;

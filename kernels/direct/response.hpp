@@ -1,5 +1,5 @@
-// What impulses of contacts do to a tree, one after the other, between two of its solves: each
-// changes the velocities of all bodies of the tree, so that the next contact meets what is there
+// What impulses of contacts and rows do to a tree, one after the other, between two of its solves:
+// each changes the velocities of all bodies of the tree, so that the next one meets what is there
 // (Gauss-Seidel in the coordinates of the joints, at the cost of a way to the root and back).
 // Work::velocity stays as it was: the solve that follows takes the sums of the impulses, in
 // DirectWork::own_load. What closes loops is not met, that solve does.

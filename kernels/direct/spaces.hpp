@@ -23,6 +23,9 @@ inline constexpr int kTwistRowsOf = S::kDim + S::kAng;
 template <class S>
 inline constexpr int kArticulatedRowsOf = kPlane<S> ? kPlanarInertiaRows : kArticulatedRows;
 
+// Whether anything acts on trees between two of their solves.
+MW_INLINE bool are_met(const Constants& t) { return t.has_contacts || t.joint_trees.beside > 0; }
+
 // Calls visit(body) for all that trees move.
 template <class Visit>
 MW_INLINE void for_each_tree_body(const Constants& t, Visit visit) {

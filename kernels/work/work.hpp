@@ -195,8 +195,8 @@ struct DirectWork {
   // Of plans with loops (kernels/direct/loops.hpp).
   Real* loop_factors;                             // [entry][lane], lower triangles
   Real *loop_floor, *loop_target, *loop_impulse;  // [row][lane]
-  // Of impulses on bodies of trees (kernels/direct/tree_paths.hpp), in plans with loops, contacts or
-  // rows beside trees.
+  // Of impulses on bodies of trees (kernels/direct/tree_paths.hpp), in plans with loops, contacts
+  // or rows beside trees.
   Real* pending;                 // [body][wrench][lane], of roots
   unsigned char* pending_edges;  // the same of edges
   std::int32_t* path;            // edges from a body to its root

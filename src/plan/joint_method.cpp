@@ -52,10 +52,20 @@ std::string need_of_levers(const Scene& scene, const std::vector<bool>& in_tree)
   return {};
 }
 
-// Each contact of a tree's body takes a way to the root and back in every pass: contacts all along
-// a chain cost the square of its length.
-bool is_long_and_touches(const Scene& scene, const SceneTrees& trees) {
-  constexpr int kMost = 64;  // joints
+// Each contact of a tree's body, and each row beside the tree, takes a way to the root and back in
+// every pass: all along a chain they cost the square of its length.
+bool is_long_and_met(const Scene& scene, const SceneTrees& trees) {
+  constexpr int kMost = 64;     // joints
+  constexpr int kMostRows = 4;  // joints beside trees
+  int rows = 0;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const auto is_long = [&](BodyId on) {
+      return on && trees.joints_with[static_cast<std::size_t>(on.index())] > kMost;
+    };
+    const Joint& joint = scene.joints[j];
+    rows += !trees.has_joint[j] && (is_long(joint.body_a) || is_long(joint.body_b)) ? 1 : 0;
+  }
+  if (rows > kMostRows) return true;
   const auto joined = joined_bodies(scene);
   const auto bodies = static_cast<int>(scene.bodies.size());
   const auto body = [&](int i) -> const Body& { return scene.at(BodyId(i)); };
@@ -124,7 +134,7 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   const std::vector<bool>& in_tree = trees.has_joint;
   const auto at_once = [](const std::string& why) { return "solved at once: " + why; };
   if (std::find(in_tree.begin(), in_tree.end(), true) == in_tree.end()) return {};
-  if (is_long_and_touches(first, trees)) return {};
+  if (is_long_and_met(first, trees)) return {};
   if (o.joint.frequency) {  // what is asked for to be soft is swept over
     const double share = *o.joint.frequency * o.dt / o.substeps.value_or(kLeastSubsteps);
     if (share <= kContactShare) return {};

@@ -89,7 +89,7 @@ class JointTreeBuilder {
     for (const int body : trees.bodies) of_tree[static_cast<std::size_t>(body)] = true;
     for (PlanPart& part : plan_.parts) {
       kernels::JointPart& what = part.what;
-      if (what.direct || what.force) continue;
+      if (what.direct) continue;
       what.beside = of_tree[static_cast<std::size_t>(what.body_a)] ||
                     of_tree[static_cast<std::size_t>(what.body_b)];
       trees.counts.beside += what.beside ? 1 : 0;

@@ -35,18 +35,18 @@ double length_of(const Scene& scene, std::size_t joint, BodyId body,
 }  // namespace
 
 std::vector<LightRow> light_rows(const Scene& scene, const SceneTrees& trees) {
-  constexpr double kLoad = 5;  // times the lighter body of a joint, and the lightest of the tree
+  constexpr double kLoad = 5;  // times the lighter body of a joint, and the lightest of all
   constexpr int kRow = 5;      // joints
-  struct Tree {
+  struct Range {
     double least = std::numeric_limits<double>::infinity(), most = 0;  // kg
-    LightRow row;
   };
-  std::map<int, Tree> all;
+  std::map<int, Range> hanging;  // of what hangs together
+  std::map<int, LightRow> all;   // of trees
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (trees.of_body[b] < 0) continue;
-    Tree& tree = all[trees.of_body[b]];
+    if (trees.hangs_with[b] < 0 || scene.bodies[b].motion != Motion::dynamic) continue;
+    Range& range = hanging[trees.hangs_with[b]];
     const double mass = mass_properties(scene, scene.bodies[b]).mass;
-    tree.least = std::min(tree.least, mass), tree.most = std::max(tree.most, mass);
+    range.least = std::min(range.least, mass), range.most = std::max(range.most, mass);
   }
   std::vector<std::vector<std::size_t>> joints_on(scene.bodies.size());
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
@@ -60,13 +60,14 @@ std::vector<LightRow> light_rows(const Scene& scene, const SceneTrees& trees) {
     const BodyId lighter = lighter_body(scene, scene.joints[j]);
     if (carried[j] < kLoad * mass_properties(scene, scene.at(lighter)).mass) continue;
     const auto of = static_cast<std::size_t>(lighter.index());
-    LightRow& row = all[trees.of_body[of]].row;
+    LightRow& row = all[trees.of_body[of]];
+    const Range& range = hanging[trees.hangs_with[of]];
+    row.ratio = range.most / range.least;
     ++row.joints, row.length += length_of(scene, j, lighter, joints_on[of]);
   }
   std::vector<LightRow> out;
-  for (auto& [first, tree] : all) {
-    tree.row.ratio = tree.most / tree.least;
-    if (tree.row.joints >= kRow && tree.row.ratio >= kLoad) out.push_back(tree.row);
+  for (const auto& [first, row] : all) {
+    if (row.joints >= kRow && row.ratio >= kLoad) out.push_back(row);
   }
   return out;
 }

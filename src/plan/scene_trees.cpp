@@ -98,8 +98,8 @@ std::vector<bool> on_loops(const Scene& scene) {
   std::vector<int> degree(world + 1);
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
     const std::size_t a = node(scene.joints[j].body_a), b = node(scene.joints[j].body_b);
-    left[j] = a != b;
-    if (a != b) of[a].push_back(j), of[b].push_back(j), ++degree[a], ++degree[b];
+    left[j] = a != b && fits(scene.joints[j]);
+    if (left[j]) of[a].push_back(j), of[b].push_back(j), ++degree[a], ++degree[b];
   }
   std::vector<std::size_t> ends;
   for (std::size_t i = 0; i < world; ++i) {

@@ -69,8 +69,8 @@ std::vector<double> carried_masses(const Scene& scene);
 // Of a joint that has one: its lighter dynamic body.
 BodyId lighter_body(const Scene& scene, const Joint& joint);
 
-// Joints of a tree that carry some times their lighter body and more, where masses of the tree
-// differ by that, and more than a few of them do (light_rows.cpp).
+// Joints of a tree that carry some times their lighter body and more, where masses of the tree and
+// of what hangs on it differ by that, and more than a few of them do (light_rows.cpp).
 struct LightRow {
   int joints = 0;
   double length = 0;  // m, of their lighter bodies together

@@ -92,7 +92,7 @@ class Builder {
   void tgs_soft() {
     Calls& to = out_.solve;
     if (t_.joints_curve) add(to, StepStage::joints, joints_.predict);
-    // Trees are done with one solve, but for what contacts spoil.
+    // Trees are done with one solve, but for what those spoil that act on them.
     if (trees()) add(to, StepStage::joints, trees_.bias);
     for (int i = 0; i < t_.solver.iterations; ++i) {
       if (sweeps()) add(to, StepStage::joints, joints_.bias);
