@@ -210,12 +210,12 @@ void carve_joint_trees(const Constants& t, DirectWork& w, Carver& c) {
   const auto loop_rows = static_cast<std::size_t>(t.joint_trees.loop_rows) * lanes;
   c.take(w.loop_floor, loop_rows), c.take(w.loop_target, loop_rows);
   c.take(w.loop_impulse, loop_rows);
-  const bool met = t.has_contacts || t.joint_trees.beside > 0;
-  if (closures == 0 && !met) return;
+  const bool loaded = t.has_contacts || t.joint_trees.attached > 0;
+  if (closures == 0 && !loaded) return;
   take(w.pending, twist);
   c.take(w.pending_edges, edges * bytes.pending);
   c.take(w.path, edges);
-  if (!met) return;
+  if (!loaded) return;
   take_factors(w.of_contacts);
   take(w.compliance, articulated);
   c.take(w.touched, static_cast<std::size_t>(t.bodies) + 1);

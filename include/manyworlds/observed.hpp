@@ -103,8 +103,8 @@ namespace manyworlds {
 // The residual is the largest change of a component of any body's velocity, and of its spin, by one
 // more sweep of the solver. The sweep follows those of the last substep (tgs_soft: a relaxing
 // sweep) and precedes restitution. The residual is 0 if the velocities solve the complementarity
-// problem of the rows, or if no body is awake. Joints of trees (JointMethod::tree) and joints that
-// act on them are not part of it.
+// problem of the rows, or if no body is awake. It does not include joints
+// of trees (JointMethod::tree) and joints attached to them.
 //
 // Accelerations are the change of velocity in the last step of a call, divided by dt. They are 0
 // for bodies that are asleep, disabled, kinematic or frozen, and after look() without a step.

@@ -82,8 +82,8 @@ struct ContactOptions {
 // solves all joints of a tree as one system, so that light bodies hold heavy loads. A tree consists
 // of bodies connected by ball, hinge, slider, fixed and wheel joints. Up to four joints without
 // drives or limits may close loops, unless a joint of the tree can break. Distance joints, pulleys
-// and targets on a tree act between its solves, with the mass of the whole tree. Other joints are
-// swept. `manyworlds plan` counts them.
+// and targets attached to a tree are solved after it, with the effective mass of the whole tree.
+// Other joints are swept. `manyworlds plan` prints how many joints are solved in which way.
 enum class JointMethod { sweep, tree };
 const char* to_string(JointMethod method);
 

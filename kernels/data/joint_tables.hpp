@@ -80,10 +80,10 @@ struct JointPart {
   bool force;                   // nothing but a spring, which the integrator of the plan evaluates
   TurnHold turn_hold;
   PointHold point_hold;
-  bool direct;   // of a tree that is solved at once, not swept over
-  bool beside;   // of none, but acts on a body of one (kernels/direct/rows_beside.hpp)
-  bool gradual;  // begins apart, and closes by its `pull`
-  bool curved;   // closes where the rotation of its bodies takes it (motion/substep_rotation.hpp)
+  bool direct;    // of a tree that is solved at once, not swept over
+  bool attached;  // to a body of such a tree, without being part of it (direct/attached_rows.hpp)
+  bool gradual;   // begins apart, and closes by its `pull`
+  bool curved;    // closes where the rotation of its bodies takes it (motion/substep_rotation.hpp)
   std::int32_t position_control, speed_control;  // of its drive's targets; -1: the Plan's
 };
 // May its rows give energy to the bodies?
@@ -118,7 +118,7 @@ struct JointTrees {
   std::int32_t loops;
   std::int32_t loop_rows, loop_factors;  // of all loops
   std::int32_t parts;                    // that edges are made of
-  std::int32_t beside;                   // parts that act on bodies of trees without being of one
+  std::int32_t attached;                 // other parts that act on bodies of trees
   bool bounded;                          // some edge has a drive or limits
   const TreeEdge* edge;
   const JointLoops* loop;

@@ -80,7 +80,7 @@ struct JointSolver {
 // have acted on.
 template <class Real>
 struct TreeRound {
-  Stage<Real> rows, rows_again;          // beside trees: the first of a pass, and the others
+  Stage<Real> rows, rows_again;          // attached to trees: first of a pass, later ones
   Stage<Real> contacts, contacts_again;  // after those
   Stage<Real> trees;
 };

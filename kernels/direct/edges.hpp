@@ -111,11 +111,11 @@ class EdgeFinder {
   using Ang = typename S::Ang;
   EdgeFinder(const Constants& t, const Group& g, Work& w) : t_(t), g_(g), w_(w) {}
 
-  // Rows of the parts, and of those beside, where the substeps have taken the bodies.
+  // Rows of the parts, and of those attached, where the substeps have taken the bodies.
   void refresh_parts() const {
     if constexpr (S::kDim == 3) find_moments<S>(t_, g_, w_);
     for_each_part<S>(t_, w_, [&](auto& s, const JointPart& part, int i) {
-      if (part.direct || part.beside)
+      if (part.direct || part.attached)
         refresh<S, kDense, true>(w_, part, constants_of_part(g_, i), s);
     });
   }

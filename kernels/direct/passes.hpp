@@ -2,8 +2,8 @@
 // fills a DirectSolver.
 #pragma once
 
+#include "kernels/direct/attached_rows.hpp"
 #include "kernels/direct/contacts.hpp"
-#include "kernels/direct/rows_beside.hpp"
 #include "kernels/direct/solve.hpp"
 #include "kernels/direct/stiffness.hpp"
 #include "kernels/direct/tree_compliances.hpp"
@@ -51,7 +51,7 @@ struct DirectPasses {
     relaxed(t, g, work_of(scratch)).run_again();
   }
 
-  // Rows beside trees, and then contacts, meet trees where those were when the substep began, and
+  // Attached rows, and then contacts, act on trees where those were when the substep began, and
   // in the relaxing pass where it has taken them. That is where the next substep begins: effective
   // masses hold for both, unless limits and drives tell the solves apart.
   template <Pass kPass, bool kAgain>
@@ -64,30 +64,30 @@ struct DirectPasses {
           kPass == Pass::bias ? biased(t, g, w, false) : relaxed(t, g, w);
       const bool moved = first || (kPass == Pass::relax && !kAgain);
       const bool weighs = moved || t.joint_trees.bounded;
-      if (weighs && t.joint_trees.beside > 0) {
+      if (weighs && t.joint_trees.attached > 0) {
         const TreeFactors<S> yielding = solve.factor_without_bounds();
         TreeCompliances<S>(t, w, yielding).find();
-        RowsBeside<S, kDense>(t, g, w).weigh(yielding);
+        AttachedRows<S, kDense>(t, g, w).weigh(yielding);
       }
       factors = solve.factor_for_contacts();
-      if (weighs && (t.joint_trees.bounded || t.joint_trees.beside == 0)) {
+      if (weighs && (t.joint_trees.bounded || t.joint_trees.attached == 0)) {
         TreeCompliances<S>(t, w, factors).find();
       }
       if (weighs && t.has_contacts) TreeContacts<S, kDense>(t, w).template weigh<true>();
     }
-    w.direct.met = {reinterpret_cast<unsigned char*>(factors.edge), factors.inertia};
+    w.direct.of_round = {reinterpret_cast<unsigned char*>(factors.edge), factors.inertia};
     response(t, w).open();
   }
   template <Pass kPass, bool kAgain>
   static void rows(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     open<kPass, kAgain>(t, g, w);
-    RowsBeside<S, kDense>(t, g, w).template solve<kPass>(response(t, w));
+    AttachedRows<S, kDense>(t, g, w).template solve<kPass>(response(t, w));
   }
   template <Pass kPass, bool kAgain>
   static void contacts(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
-    if (t.joint_trees.beside == 0) open<kPass, kAgain>(t, g, w);
+    if (t.joint_trees.attached == 0) open<kPass, kAgain>(t, g, w);
     TreeContacts<S, kDense>(t, w).template solve<kPass>(response(t, w));
   }
   // What the relaxing pass did counts for restitution.
@@ -117,7 +117,7 @@ struct DirectPasses {
   // Marks the bodies of trees that contacts or rows are on, and those that they hang on; whether
   // there are any.
   static bool find_touched(const Constants& t, const Group& g, Work& w) {
-    if (!are_met(t)) return false;
+    if (!are_loaded(t)) return false;
     std::uint32_t* touched = w.direct.touched;
     for (int b = 0; b <= t.bodies; ++b) touched[b] = 0;
     std::uint32_t some = 0;
@@ -126,7 +126,7 @@ struct DirectPasses {
       touched[body] |= held, some |= held;
     };
     if (t.has_contacts) TreeContacts<S, kDense>(t, w).for_each_end(touch);
-    if (t.joint_trees.beside > 0) RowsBeside<S, kDense>(t, g, w).for_each_end(touch);
+    if (t.joint_trees.attached > 0) AttachedRows<S, kDense>(t, g, w).for_each_end(touch);
     for (int i = t.joint_trees.edges - 1; some != 0 && i >= 0; --i) {
       const TreeEdge& edge = t.joint_trees.edge[i];
       if (!edge.prescribed) touched[edge.parent] |= touched[edge.child];
@@ -134,7 +134,7 @@ struct DirectPasses {
     return some != 0;
   }
   static TreeResponse<S, kDense> response(const Constants& t, Work& w) {
-    return {t, w, factors_in<S>(w.direct.met)};
+    return {t, w, factors_in<S>(w.direct.of_round)};
   }
   static TreeSolve<S, kDense> biased(const Constants& t, const Group& g, Work& w, bool first) {
     return {t, g, w, w.substep, w.direct.is_stiff, true, first};

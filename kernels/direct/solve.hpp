@@ -58,8 +58,8 @@ class TreeSolve {
   // substep they keep their impulses instead, which takes back what contacts pushed against in
   // vain: else that feeds energy.
   TreeFactors<S> factor_for_contacts() const { return factor_in(d_.firm); }
-  // And for the masses of rows beside trees. One that pulls a joint off its limit, or overcomes its
-  // drive, would do far too much by what these hold.
+  // Factors for the effective masses of attached rows. A limit or drive that holds would add to the
+  // mass, and the impulse of a row that pulls the joint off the limit would be far too large.
   TreeFactors<S> factor_without_bounds() const {
     return factor_in(t_.joint_trees.bounded ? 0 : kAllLanes);
   }

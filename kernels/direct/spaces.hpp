@@ -23,8 +23,10 @@ inline constexpr int kTwistRowsOf = S::kDim + S::kAng;
 template <class S>
 inline constexpr int kArticulatedRowsOf = kPlane<S> ? kPlanarInertiaRows : kArticulatedRows;
 
-// Whether anything acts on trees between two of their solves.
-MW_INLINE bool are_met(const Constants& t) { return t.has_contacts || t.joint_trees.beside > 0; }
+// Whether contacts or attached rows act on trees between two of their solves.
+MW_INLINE bool are_loaded(const Constants& t) {
+  return t.has_contacts || t.joint_trees.attached > 0;
+}
 
 // Calls visit(body) for all that trees move.
 template <class Visit>

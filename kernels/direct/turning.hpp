@@ -8,8 +8,8 @@
 // with the s for which the w that come of it make sum (w - s mean)' K (w - s mean) the least:
 // sum mean' K (w - s mean) = 0. Then the stiffness takes sum w' K (w - s mean) >= 0 of energy and
 // gives none, however the joints change w. It is linear in s, so two solves tell it, and a third
-// has it. Contacts and rows beside trees change w afterwards, and are fed energy by what still
-// turns: in lanes in which there are some on a tree, s is 0.
+// has it. Contacts and attached rows change w afterwards, and are fed energy by what still turns:
+// in lanes in which there are some on a tree, s is 0.
 //
 // Between two ends that hold still no motion of a straight chain turns it in the mean: all that the
 // stiffness is for is held as before. Swings are not damped any more.
@@ -65,11 +65,11 @@ class Turning {
       store(at(d_.twist, b), k), store(at(d_.load, b), apply(k, velocity(b)));
     });
     sum_trees<S::kInertia, MomentsOf<S>>(d_.twist), sum_trees<S::kAng, Ang>(d_.load);
-    if (are_met(t_)) spread_touched();
+    if (are_loaded(t_)) spread_touched();
     std::uint32_t turns = 0;
     for_each_tree_body(t_, [&](int b) {
       const auto sum = load_as<MomentsOf<S>>(at(d_.twist, b));
-      const Mask touched = mask_from_bits(are_met(t_) ? d_.touched[b] : 0);
+      const Mask touched = mask_from_bits(are_loaded(t_) ? d_.touched[b] : 0);
       const Ang mean = select(touched, zero_of<Ang>(), mean_of(sum, load_as<Ang>(at(d_.load, b))));
       store(mean_at(b), mean);
       turns |= bits(Float(Real(0)) < dot_of(mean, mean));

@@ -136,7 +136,7 @@ struct JointPasses {
   static void pass(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     Work& w = work_of(scratch);
     for_each_part<S>(t, w, [&](auto& s, const JointPart& part, int i) {
-      if (s.mask == 0 || part.direct || (kPass != Pass::warm_start && part.beside)) return;
+      if (s.mask == 0 || part.direct || (kPass != Pass::warm_start && part.attached)) return;
       PartVelocities<S, kDense> v(w, s);
       const bool relaxes = kPass == Pass::bias && t.solver.relaxes && !bounded(part);
       const PartImpulses before = relaxes ? impulses_of(s) : PartImpulses{};

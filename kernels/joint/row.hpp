@@ -31,7 +31,7 @@ struct alignas(64) Row : AnchoredRows<S> {
 // By which springs of a frequency are as stiff as if their bodies were free.
 template <class S>
 MW_INLINE Float k_of_springs(const JointPart& part, const Row<S>& s) {
-  return Float::load(part.beside ? s.free_k : s.k);
+  return Float::load(part.attached ? s.free_k : s.k);
 }
 
 template <class S, class Velocities>

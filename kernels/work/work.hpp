@@ -196,18 +196,18 @@ struct DirectWork {
   Real* loop_factors;                             // [entry][lane], lower triangles
   Real *loop_floor, *loop_target, *loop_impulse;  // [row][lane]
   // Of impulses on bodies of trees (kernels/direct/tree_paths.hpp), in plans with loops, contacts
-  // or rows beside trees.
+  // or attached rows.
   Real* pending;                 // [body][wrench][lane], of roots
   unsigned char* pending_edges;  // the same of edges
   std::int32_t* path;            // edges from a body to its root
-  // Of plans with contacts or rows beside trees (kernels/direct/response.hpp).
+  // Of plans with contacts or attached rows (kernels/direct/response.hpp).
   TreeFactorRows of_contacts;
-  TreeFactorRows met;      // those of the round
-  std::uint32_t firm;      // lanes in which limits and drives hold against them
-  Real* inv_tree_mass;     // [body][lane], 1/kg, of plans with contacts
-  Real* compliance;        // [body][compliance][lane]
-  std::uint32_t* touched;  // [body] lanes with any on it, or on what hangs on it
-  std::uint32_t pushed;    // lanes in which the pass has done anything
+  TreeFactorRows of_round;  // those of the present round
+  std::uint32_t firm;       // lanes in which limits and drives hold against them
+  Real* inv_tree_mass;      // [body][lane], 1/kg, of plans with contacts
+  Real* compliance;         // [body][compliance][lane]
+  std::uint32_t* touched;   // [body] lanes with any on it, or on what hangs on it
+  std::uint32_t pushed;     // lanes in which the pass has done anything
 };
 
 // Of a step in which energies are audited (kernels/observe/audit.hpp): the energy before it, what a

@@ -52,11 +52,11 @@ std::string need_of_levers(const Scene& scene, const std::vector<bool>& in_tree)
   return {};
 }
 
-// Each contact of a tree's body, and each row beside the tree, takes a way to the root and back in
+// Each contact of a tree's body, and each row attached to one, takes a way to the root and back in
 // every pass: all along a chain they cost the square of its length.
-bool is_long_and_met(const Scene& scene, const SceneTrees& trees) {
+bool is_long_and_loaded(const Scene& scene, const SceneTrees& trees) {
   constexpr int kMost = 64;     // joints
-  constexpr int kMostRows = 4;  // joints beside trees
+  constexpr int kMostRows = 4;  // joints attached to trees
   int rows = 0;
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
     const auto is_long = [&](BodyId on) {
@@ -134,7 +134,7 @@ std::string need_of_trees(const std::vector<Scene>& extremes, double length_unit
   const std::vector<bool>& in_tree = trees.has_joint;
   const auto at_once = [](const std::string& why) { return "solved at once: " + why; };
   if (std::find(in_tree.begin(), in_tree.end(), true) == in_tree.end()) return {};
-  if (is_long_and_met(first, trees)) return {};
+  if (is_long_and_loaded(first, trees)) return {};
   if (o.joint.frequency) {  // what is asked for to be soft is swept over
     const double share = *o.joint.frequency * o.dt / o.substeps.value_or(kLeastSubsteps);
     if (share <= kContactShare) return {};

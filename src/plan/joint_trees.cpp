@@ -82,17 +82,17 @@ class JointTreeBuilder {
         ++counts.parts;
       }
     }
-    find_beside(trees);
+    find_attached(trees);
   }
-  void find_beside(PlanJointTrees& trees) const {
+  void find_attached(PlanJointTrees& trees) const {
     std::vector<bool> of_tree(plan_.bodies.size() + 1, false);  // the last: the world
     for (const int body : trees.bodies) of_tree[static_cast<std::size_t>(body)] = true;
     for (PlanPart& part : plan_.parts) {
       kernels::JointPart& what = part.what;
       if (what.direct) continue;
-      what.beside = of_tree[static_cast<std::size_t>(what.body_a)] ||
-                    of_tree[static_cast<std::size_t>(what.body_b)];
-      trees.counts.beside += what.beside ? 1 : 0;
+      what.attached = of_tree[static_cast<std::size_t>(what.body_a)] ||
+                      of_tree[static_cast<std::size_t>(what.body_b)];
+      trees.counts.attached += what.attached ? 1 : 0;
     }
   }
   // The world and kinematic bodies move as they are told.

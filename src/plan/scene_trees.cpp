@@ -22,6 +22,11 @@ bool fits(const Joint& joint) {
   return std::visit(of_type, joint.type);
 }
 
+bool moves(const Scene& scene, BodyId body) {
+  return body && scene.at(body).motion == Motion::dynamic;
+}
+std::size_t index(BodyId body) { return static_cast<std::size_t>(body.index()); }
+
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {
@@ -50,7 +55,7 @@ struct StartGap {
 };
 StartGap start_gap(const Scene& scene, const Joint& joint) {
   const auto arm = [&](BodyId id, const Frame& frame) {
-    if (!id || scene.at(id).motion != Motion::dynamic) return 0.0;
+    if (!moves(scene, id)) return 0.0;
     return (frame.position - mass_properties(scene, scene.at(id)).center).norm();
   };
   const Vec3 gap = frame_in_world(scene, joint.body_b, joint.frame_b).position -
@@ -89,10 +94,7 @@ namespace {
 // left when joints of bodies without another one have gone, and so on.
 std::vector<bool> on_loops(const Scene& scene) {
   const std::size_t world = scene.bodies.size();
-  const auto node = [&](BodyId body) {
-    const bool moves = body && scene.at(body).motion == Motion::dynamic;
-    return moves ? static_cast<std::size_t>(body.index()) : world;
-  };
+  const auto node = [&](BodyId body) { return moves(scene, body) ? index(body) : world; };
   std::vector<std::vector<std::size_t>> of(world + 1);
   std::vector<bool> left(scene.joints.size());
   std::vector<int> degree(world + 1);
@@ -119,18 +121,16 @@ std::vector<bool> on_loops(const Scene& scene) {
   return left;
 }
 
-// What joints of any type connect with trees, of which the tree's bodies are known.
+// Finds what joints of any type connect with the bodies of trees.
 void find_hanging(const Scene& scene, SceneTrees& out) {
   struct Hanging {
     int joints = 0;
     bool has_tree = false;
   };
   const std::size_t bodies = scene.bodies.size();
-  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
-  const auto index = [](BodyId body) { return static_cast<std::size_t>(body.index()); };
   DisjointSets sets(bodies);
   for (const Joint& joint : scene.joints) {
-    if (moves(joint.body_a) && moves(joint.body_b)) {
+    if (moves(scene, joint.body_a) && moves(scene, joint.body_b)) {
       sets.join(index(joint.body_a), index(joint.body_b));
     }
   }
@@ -139,8 +139,8 @@ void find_hanging(const Scene& scene, SceneTrees& out) {
     if (out.of_body[i] >= 0) of[sets.find(i)].has_tree = true;
   }
   for (const Joint& joint : scene.joints) {
-    const BodyId moving = moves(joint.body_a) ? joint.body_a : joint.body_b;
-    if (moves(moving)) ++of[sets.find(index(moving))].joints;
+    const BodyId moving = moves(scene, joint.body_a) ? joint.body_a : joint.body_b;
+    if (moves(scene, moving)) ++of[sets.find(index(moving))].joints;
   }
   for (std::size_t i = 0; i < bodies; ++i) {
     const std::size_t by = sets.find(i);
@@ -160,19 +160,17 @@ SceneTrees trees_of(const Scene& scene) {
     bool is_tree() const { return fits && joints > 0 && closures <= kMostClosures; }
   };
   const std::size_t bodies = scene.bodies.size();
-  const auto moves = [&](BodyId body) { return body && scene.at(body).motion == Motion::dynamic; };
-  const auto index = [](BodyId body) { return static_cast<std::size_t>(body.index()); };
   const auto held = [&](const Joint& joint) {
-    return fits(joint) && (moves(joint.body_a) || moves(joint.body_b));
+    return fits(joint) && (moves(scene, joint.body_a) || moves(scene, joint.body_b));
   };
   DisjointSets together(bodies), held_together(bodies + 1);  // with all that does not move as one
   for (const Joint& joint : scene.joints) {
-    if (fits(joint) && moves(joint.body_a) && moves(joint.body_b)) {
+    if (fits(joint) && moves(scene, joint.body_a) && moves(scene, joint.body_b)) {
       together.join(index(joint.body_a), index(joint.body_b));
     }
   }
   const auto root = [&](const Joint& joint) {
-    return together.find(index(moves(joint.body_a) ? joint.body_a : joint.body_b));
+    return together.find(index(moves(scene, joint.body_a) ? joint.body_a : joint.body_b));
   };
   std::vector<Component> of(bodies);
   for (const bool bounded : {true, false}) {  // those that cannot close a loop first
@@ -180,8 +178,8 @@ SceneTrees trees_of(const Scene& scene) {
       if (!held(joint) || has_bounds(joint) != bounded) continue;
       Component& component = of[root(joint)];
       ++component.joints;
-      const std::size_t a = moves(joint.body_a) ? index(joint.body_a) : bodies;
-      const std::size_t b = moves(joint.body_b) ? index(joint.body_b) : bodies;
+      const std::size_t a = moves(scene, joint.body_a) ? index(joint.body_a) : bodies;
+      const std::size_t b = moves(scene, joint.body_b) ? index(joint.body_b) : bodies;
       if (held_together.join(a, b)) continue;
       component.fits &= !bounded;
       ++component.closures;

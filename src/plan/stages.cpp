@@ -28,14 +28,14 @@ void choose_tree_stages(PlanData& plan) {
 
 // How many of the scene's joints are solved in which way.
 std::string how_joints_are_solved(const PlanData& plan) {
-  int at_once = 0, beside = 0, swept = 0, last = -1;
+  int at_once = 0, attached = 0, swept = 0, last = -1;
   for (const PlanPart& part : plan.parts) {
     if (part.joint == last) continue;
     last = part.joint;
-    ++(part.what.direct ? at_once : part.what.beside ? beside : swept);
+    ++(part.what.direct ? at_once : part.what.attached ? attached : swept);
   }
   std::string out = std::to_string(at_once) + " solved at once";
-  if (beside > 0) out += ", " + std::to_string(beside) + " between those solves";
+  if (attached > 0) out += ", " + std::to_string(attached) + " attached to these";
   if (swept > 0) out += ", " + std::to_string(swept) + " swept";
   return out;
 }

@@ -50,12 +50,12 @@ class Builder {
   bool trees() const { return joints() && t_.joint_trees.edges > 0; }
   // Whether some parts of joints are swept over.
   bool sweeps() const {
-    return joints() && t_.joint_trees.parts + t_.joint_trees.beside < t_.parts;
+    return joints() && t_.joint_trees.parts + t_.joint_trees.attached < t_.parts;
   }
   bool trees_touch() const { return trees() && contacts(); }
   // Whether something acts on trees between two of their solves.
-  bool trees_are_met() const { return trees_touch() || rows_beside(); }
-  bool rows_beside() const { return trees() && t_.joint_trees.beside > 0; }
+  bool trees_are_loaded() const { return trees_touch() || rows_attached(); }
+  bool rows_attached() const { return trees() && t_.joint_trees.attached > 0; }
   // Impulses are those of one substep alone: nothing is carried over.
   bool forgets() const { return t_.solver.kind == Solver::penalty; }
 
@@ -96,18 +96,19 @@ class Builder {
     if (trees()) add(to, StepStage::joints, trees_.bias);
     for (int i = 0; i < t_.solver.iterations; ++i) {
       if (sweeps()) add(to, StepStage::joints, joints_.bias);
-      trees_are_met() ? round(StepStage::bias, trees_.bias_round, i > 0)
-                      : add_carried(to, StepStage::bias, solver_.bias);
+      trees_are_loaded() ? round(StepStage::bias, trees_.bias_round, i > 0)
+                         : add_carried(to, StepStage::bias, solver_.bias);
     }
     // One more brings loads from leg to leg, and to limits, drives and loops that rows do not see.
-    if (trees_touch() || (rows_beside() && (t_.joint_trees.bounded || t_.joint_trees.loops > 0))) {
+    if (trees_touch() ||
+        (rows_attached() && (t_.joint_trees.bounded || t_.joint_trees.loops > 0))) {
       round(StepStage::bias, trees_.bias_round, true);
     }
     add(to, StepStage::advance, solver_.advance);
     add(to, StepStage::joints, joints_.rotate);
     if (trees()) add(to, StepStage::joints, trees_.relax);
     if (sweeps()) add(to, StepStage::joints, joints_.relax);
-    if (trees_are_met()) {
+    if (trees_are_loaded()) {
       // Contacts push against limits and drives that give way only in the solve that follows: it
       // takes another round to take that back, else it feeds energy.
       round(StepStage::relax, trees_.relax_round, false);
@@ -118,9 +119,9 @@ class Builder {
     }
     ask_here(joints_.relax, solver_.relax);
   }
-  // What acts on trees by how those give way, and the trees that it has acted on.
+  // What acts on trees, with their compliance, and then the trees.
   void round(StepStage stage, const kernels::TreeRound<Real>& of, bool again) {
-    if (rows_beside()) add(out_.solve, StepStage::joints, again ? of.rows_again : of.rows);
+    if (rows_attached()) add(out_.solve, StepStage::joints, again ? of.rows_again : of.rows);
     add_carried(out_.solve, stage, again ? of.contacts_again : of.contacts);
     add(out_.solve, StepStage::joints, of.trees);
   }

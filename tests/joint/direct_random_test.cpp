@@ -220,7 +220,9 @@ TEST_CASE("random trees of ball joints with limits that fall gain no energy", "[
   CHECK(balls > 200);
 }
 
-TEST_CASE("random trees with rows beside them that fall gain no energy", "[joint][slow]") {
+// Of these, 6, 22, 87, 102, 110 and 112 gain energy where limits and bounded drives add to the
+// effective masses of attached rows.
+TEST_CASE("random trees with rods, ropes and springs that fall gain no energy", "[joint][slow]") {
   int rows = 0;
   for (std::uint64_t seed = 0; seed < 120; ++seed) {
     Random random(seed);

@@ -185,7 +185,7 @@ TEST_CASE("trees of joints move as the whole system of equations says", "[fast][
   CHECK(looped > 30);
 }
 
-TEST_CASE("trees with a spring beside them move as the whole system of equations says",
+TEST_CASE("trees with a spring attached move as the whole system of equations says",
           "[fast][joint]") {
   Random random(21);
   for (const Space space : {Space::planar, Space::spatial}) {

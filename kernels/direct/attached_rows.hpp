@@ -1,9 +1,9 @@
 // Rows of joints that act on bodies of trees without being part of them: rods, ropes, springs,
-// pulleys and targets. Like contacts they meet trees as those give way (response.hpp), one row
-// after the other, between two solves of the trees. With W the inverse of a tree's inertia and W0
-// that of free bodies, the effective mass of a row J is 1 / (J (W + floor W0) J'), both its ends
-// included: a tree may hold it wholly, and rounding leave anything. In lanes in which no tree moves
-// a body it is as any other.
+// pulleys and targets. Like contacts (response.hpp) they are solved one after the other, between
+// two solves of the trees. With W the inverse of a tree's inertia and W0 that of free bodies, the
+// effective mass of a row J is 1 / (J (W + floor W0) J'), both its ends included. The floor bounds
+// it where the tree holds a row fully and W has only rounding. Lanes in which no tree moves a body
+// compute what sweeps compute.
 #pragma once
 
 #include "kernels/direct/loops.hpp"
@@ -12,11 +12,11 @@
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
 template <class S, bool kDense>
-class RowsBeside {
+class AttachedRows {
  public:
   using Vec = typename S::Vec;
   using Ang = typename S::Ang;
-  RowsBeside(const Constants& t, const Group& g, Work& w) : t_(t), g_(g), w_(w) {}
+  AttachedRows(const Constants& t, const Group& g, Work& w) : t_(t), g_(g), w_(w) {}
 
   // visit(body, lanes) for the bodies that they act on.
   template <class Visit>
@@ -27,7 +27,7 @@ class RowsBeside {
     });
   }
 
-  // Effective masses, where the compliances of what is touched have been found.
+  // Computes effective masses. The compliances of touched bodies must be known.
   void weigh(const TreeFactors<S>& factors) const {
     const TreePaths<S, true> paths(t_, w_, factors);
     paths.open();
@@ -37,12 +37,12 @@ class RowsBeside {
     });
   }
 
-  // Several take turns, as one cannot know of the others.
+  // Gauss-Seidel; a single row is repeated once to remove the error of the floor.
   template <Pass kPass>
   void solve(const TreeResponse<S, kDense>& response) const {
-    constexpr int kMostTurns = 4;
-    const int turns = t_.joint_trees.beside < kMostTurns ? t_.joint_trees.beside + 1 : kMostTurns;
-    for (int i = 0; i < turns; ++i) {
+    constexpr int kMostSweeps = 4;
+    const int rows = t_.joint_trees.attached, sweeps = rows < kMostSweeps ? rows + 1 : kMostSweeps;
+    for (int i = 0; i < sweeps; ++i) {
       for_each([&](auto& s, const JointPart& part, const Joint& constants) {
         solve_part<kPass>(response, part, constants, s);
       });
@@ -50,12 +50,12 @@ class RowsBeside {
   }
 
  private:
-  // visit(rows, part, its numbers): all that act in some lane.
+  // visit(rows, part, its constants) for each that acts in some lane.
   template <class Visit>
   MW_INLINE void for_each(Visit visit) const {
     for (int i = 0; i < t_.parts; ++i) {
       const JointPart& part = t_.part[i];
-      if (!part.beside) continue;
+      if (!part.attached) continue;
       const auto look = [&](auto& s) {
         if (s.mask != 0) visit(s, part, constants_of_part(g_, i));
       };
@@ -143,10 +143,10 @@ class RowsBeside {
     const std::uint32_t tree_a = lanes_of(s.body_a, s.mask), tree_b = lanes_of(s.body_b, s.mask);
     const PartVelocities<S, kDense> began(w_, s);
     PartVelocities<S, kDense> v = began;
-    const auto meet = [&](int body, std::uint32_t lanes, Velocity<S>& to) {
+    const auto load = [&](int body, std::uint32_t lanes, Velocity<S>& to) {
       if (lanes != 0) to = select(mask_from_bits(lanes), response.velocity_of(body), to);
     };
-    meet(s.body_a, tree_a, v.a), meet(s.body_b, tree_b, v.b);
+    load(s.body_a, tree_a, v.a), load(s.body_b, tree_b, v.b);
     const auto before = impulse_along(s);
     solve_placed<S, kDense, kPass>(t_, g_, w_, part, constants, s, v);
     const auto p = impulse_along(s) - before;

@@ -1,8 +1,11 @@
 // Rods, ropes, springs, pulleys and targets on bodies of trees that are solved at once.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "scenes/loaded_trees.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/same_bits.hpp"
@@ -66,9 +69,9 @@ struct Arm {
   BodyId tip, load;
   double length = 0;  // m, from the tip to the load at rest
 };
-// Up to three links held straight by servos that give way by a thousandth, and a load at the end.
+// Up to three links held straight by servos that deflect by a thousandth, and a load at the end.
 Arm loaded_arm(Random& random, Space space, int kind, double size, double ratio) {
-  constexpr double kGive = 1e-3;  // rad
+  constexpr double kDeflection = 1e-3;  // rad
   Arm out;
   Scene& scene = out.scene = empty_scene(space, 10);
   const double tick = std::sqrt(size);
@@ -80,7 +83,7 @@ Arm loaded_arm(Random& random, Space space, int kind, double size, double ratio)
     out.tip = scene.add(lump(space, mass, inertia, (i + 0.5) * size * Vec3::UnitX()));
     double moment = 10 * load * (links - i) * size;
     for (int k = i; k < links; ++k) moment += 10 * mass * (k - i + 0.5) * size;
-    const Spring servo{moment / kGive, 0.05 * tick * moment / kGive};
+    const Spring servo{moment / kDeflection, 0.05 * tick * moment / kDeflection};
     const Frame frame{i * size * Vec3::UnitX(), hinge_axes(space)};
     const BodyId on = i == 0 ? BodyId{} : BodyId(i - 1);
     scene.add(joint_at(scene, on, out.tip, frame, HingeJoint{std::nullopt, Drive{0, 0, servo}}));
@@ -108,15 +111,20 @@ TEST_CASE("what hangs on trees has the same bits wherever a world is", "[bits][f
   }
 }
 
-TEST_CASE("a rope leaves the tree that it hangs on to be solved at once", "[fast][joint][plan]") {
+TEST_CASE("attached joints leave trees to be solved at once", "[fast][joint][plan]") {
   for (const Space space : kSpaces) {
+    const PlanReport report = compile(crane(space)).report();
+    const auto joints =
+        std::find_if(report.stages.begin(), report.stages.end(),
+                     [](const PlanReport::Item& stage) { return stage.name == "joints"; });
+    REQUIRE(joints != report.stages.end());
+    CHECK(joints->why == "3 solved at once, 6 attached to these");
     Random random(7);
     const Plan plan = compile(loaded_arm(random, space, 1, 1, 100).scene);
-    CHECK(plan.resolved().joint.method == JointMethod::tree);
+    CHECK(plan.resolved().joint.method == JointMethod::tree);  // for the load on the rope
   }
 }
 
-// Swept, the lightest arms let their loads fall.
 TEST_CASE("loads of any mass hang still on arms of any size", "[fast][joint]") {
   Random random(48);
   for (const Space space : kSpaces) {
@@ -137,6 +145,34 @@ TEST_CASE("loads of any mass hang still on arms of any size", "[fast][joint]") {
         const Vec3 moved = position(batch, 0, arm.load.index()) - arm.scene.at(arm.load).position;
         CHECK(moved.norm() < 0.02 * size);
         CHECK(velocity(batch, 0, arm.load.index()).norm() < 1e-2 * std::sqrt(10 * size));
+      }
+    }
+  }
+}
+
+// Symplectic Euler's energy swings by m g v h / 2, and the load falls at 9 m/s.
+TEST_CASE("loads that swing on a chain by a rod or rope gain no energy", "[fast][joint]") {
+  constexpr int kLinks = 6;
+  for (const Space space : kSpaces) {
+    for (const DistanceJoint& by : {DistanceJoint{}, rope(1)}) {
+      for (const double load : {1.0, 10.0, 100.0, 1000.0}) {
+        Scene scene = tree_scene(space);
+        scenes::add_rods(scene, kLinks, 0.5, 1, HingeJoint{});
+        const Vec3 end = 0.5 * kLinks * Vec3::UnitX();
+        hang(scene, BodyId(kLinks - 1), 0.25 * Vec3::UnitX(), end + Vec3::UnitX(), load, by);
+        const double fall = 10 * (4 * load + kLinks * 1.5);  // J
+        for (const Table& table : widest_tables()) {
+          INFO(name(table) << " load " << load << ", rope " << by.limit.has_value());
+          Batch batch(compile(scene), options_of(table));
+          const double start = energy_of(batch, 0);
+          double gain = 0;
+          for (int i = 0; i < 600; ++i) {
+            batch.step();
+            gain = std::max(gain, energy_of(batch, 0) - start);
+          }
+          CHECK(batch.status(0) == Status::ok);
+          CHECK(gain < 4e-3 * fall);
+        }
       }
     }
   }
