@@ -22,5 +22,5 @@ target_link_libraries(manyworlds_tools_base PUBLIC manyworlds PRIVATE fmt::fmt)
 target_link_libraries(manyworlds_invariants PUBLIC
   manyworlds manyworlds_tools_base PRIVATE Threads::Threads)
 mw_precompile(manyworlds_invariants <manyworlds/batch.hpp> <scenes/builders.hpp>)
-# Families have many small names that are the same from file to file, and stay alone.
 mw_unity(manyworlds_tools_base)
+mw_unity(manyworlds_invariants GROUPS 2)

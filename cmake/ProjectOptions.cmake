@@ -35,6 +35,7 @@ if(MW_SANITIZE)
 endif()
 
 include("${CMAKE_CURRENT_LIST_DIR}/Ccache.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/Unity.cmake")
 
 # mw_precompile(TARGET [HEADER...]): reads once what most files of a target include: these headers,
 # Eigen and parts of the standard library.
@@ -55,36 +56,6 @@ function(mw_library target)
   add_library(${target} ${ARGN})
   set_target_properties(${target} PROPERTIES DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-endfunction()
-
-# mw_unity(TARGET): with MW_UNITY, compiles the files of each of the target's folders as one, which
-# spares their common headers and instantiations. What a folder's files define for themselves has to
-# differ in name, then; files with definitions of their own (mw_define) and ALONE ones stay alone. A file
-# that lacks an include finds it in a file before it: MW_UNITY_BACKWARD, in a build of CI, has the others there.
-function(mw_unity target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" ALONE)
-  if(NOT MW_UNITY)
-    return()
-  endif()
-  get_target_property(sources ${target} SOURCES)
-  list(FILTER sources INCLUDE REGEX "\\.cpp$")
-  foreach(source IN LISTS sources)
-    cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE group)
-    cmake_path(GET group PARENT_PATH group)
-    string(MAKE_C_IDENTIFIER "${group}" group)
-    string(REGEX REPLACE "^src_" "" group "${group}")
-    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
-  endforeach()
-  if(MW_UNITY_BACKWARD)
-    get_target_property(sources ${target} SOURCES)
-    list(REVERSE sources)
-    set_target_properties(${target} PROPERTIES SOURCES "${sources}")
-  endif()
-  list(TRANSFORM arg_ALONE PREPEND "${PROJECT_SOURCE_DIR}/")
-  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # One file's own name may be another's local one.
-  target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
 # mw_define(FILE DEFINITION...): for one file. What the whole target need not know does not compile it

@@ -25,6 +25,7 @@ cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH mw_root)
 set(mw_python_dir "${mw_root}/python")
 
 include("${mw_root}/cmake/SharedLibrary.cmake")
+include("${mw_root}/cmake/Unity.cmake")
 set(mw_python_targets)
 get_target_property(mw_shared_type manyworlds_shared TYPE)
 get_target_property(mw_shared_imported manyworlds_shared IMPORTED)
@@ -43,6 +44,8 @@ function(mw_python_module name)
   target_include_directories(${target} PRIVATE "${mw_root}")
   target_compile_definitions(${target} PRIVATE MW_VERSION="${PROJECT_VERSION}")
   target_link_libraries(${target} PRIVATE manyworlds_shared)
+  # Environments and batches have methods of the same names.
+  mw_unity(${target} ALONE python/src/bind_environment.cpp)
   if(MW_SANITIZE MATCHES address)
     # Half of the time to compile; what takes long is in the library, which keeps it.
     target_compile_options(${target} PRIVATE -O0)

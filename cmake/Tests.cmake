@@ -35,6 +35,7 @@ set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/main.cpp" PROPERTIES
 # It asks Catch2 for more than what is precompiled.
 set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/support/one_thread.cpp" PROPERTIES
   SKIP_PRECOMPILE_HEADERS ON)
+mw_unity(manyworlds_test_support ALONE tests/main.cpp tests/support/one_thread.cpp)
 set(mw_test_paths MW_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 if(TARGET manyworlds_cli)
   list(APPEND mw_test_paths MW_CLI_PATH="$<TARGET_FILE:manyworlds_cli>")
@@ -59,6 +60,11 @@ function(mw_test_program target)
   if(TARGET manyworlds_cli)
     add_dependencies(${target} manyworlds_cli manyworlds_failing_threads)
   endif()
+  mw_unity(${target})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # Of optionals that are moved, whose header does not count as a system's once it is precompiled.
+    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+  endif()
   set(cost 0)
   if(target MATCHES "_record_")
     set(cost 100)
@@ -79,6 +85,9 @@ if(MW_TEST_SOURCES)
   list(FILTER mw_test_sources INCLUDE REGEX "/(${MW_TEST_SOURCES})_test")
 endif()
 include("${CMAKE_CURRENT_LIST_DIR}/Invariants.cmake")
+# It has an operator new of its own, which GCC would inline into others.
+set_source_files_properties("${PROJECT_SOURCE_DIR}/tests/record/faults.cpp" PROPERTIES
+  SKIP_UNITY_BUILD_INCLUSION ON)
 mw_test_program(manyworlds_tests ${mw_test_sources})
 target_link_libraries(manyworlds_tests PRIVATE manyworlds_invariants)
 if(MW_MJCF AND mw_mjcf_test_sources)
@@ -134,6 +143,10 @@ endif()
 
 add_test(NAME check_floors
   COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_floors.py"
+          "${PROJECT_SOURCE_DIR}")
+
+add_test(NAME check_unity_names
+  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/tools/scripts/check_unity_names.py"
           "${PROJECT_SOURCE_DIR}")
 
 # tools/run and tools/test build what they need, .ci/run sums up its stages, README and docs/cli.md

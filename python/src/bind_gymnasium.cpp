@@ -45,7 +45,8 @@ void read(Argument& argument, nb::handle value) {
   }
 }
 
-nb::object make(const std::string& name, nb::object scene, const nb::dict& arguments) {
+nb::object make_gymnasium_task(const std::string& name, nb::object scene,
+                               const nb::dict& arguments) {
   const gymnasium::Entry* entry = gymnasium::find(name);
   if (!entry) throw nb::value_error(("there is no task '" + name + "'").c_str());
   std::vector<Argument> values = entry->arguments;
@@ -72,8 +73,8 @@ void bind_gymnasium(nb::module_& m) {
         return out;
       },
       "Gymnasium's tasks by name: model, and arguments with their defaults.");
-  m.def("gymnasium_task", &make, nb::arg("name"), nb::arg("scene"), nb::arg("arguments"),
-        "A Gymnasium task for a model. Unknown arguments are ignored.");
+  m.def("gymnasium_task", &make_gymnasium_task, nb::arg("name"), nb::arg("scene"),
+        nb::arg("arguments"), "A Gymnasium task for a model. Unknown arguments are ignored.");
 }
 
 }  // namespace manyworlds::python

@@ -34,7 +34,7 @@ std::vector<std::pair<std::string, std::string>> issues_of(const std::vector<Iss
   return out;
 }
 
-nb::object load(const std::string& name) {
+nb::object load_scene(const std::string& name) {
   if (const scenes::Entry* entry = scenes::find(name)) return to_python(entry->make());
   if (const auto scene = scenes::sized(name)) return to_python(*scene);
   throw nb::value_error(("there is no scene '" + name + "' (nearest: '" + scenes::nearest(name) +
@@ -94,7 +94,7 @@ void bind_scene(nb::module_& m) {
       },
       nb::arg("scene"), nb::arg("name"), nb::arg("body").none(),
       "(body, index) of the shape with this name, of one body or of all.");
-  m.def("load_scene", &load, nb::arg("name"), "The scene with this name.");
+  m.def("load_scene", &load_scene, nb::arg("name"), "The scene with this name.");
   m.def(
       "scene_names",
       [] {

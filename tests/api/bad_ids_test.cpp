@@ -37,7 +37,7 @@ std::string thrown_by(const Call& call, int index) {
   return "nothing was thrown";
 }
 
-void check_all(const std::vector<Call>& all) {
+void check_calls(const std::vector<Call>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Call& call = all[i];
     const std::string range = call.count == 0 ? ", but there are none"
@@ -72,7 +72,7 @@ TEST_CASE("a scene refuses handles of what it does not have", "[fast][misuse]") 
   Scene scene = small_scene();
   const Scene empty;
   const Frame frame;
-  check_all({
+  check_calls({
       {"body", 2, [&](int i) { scene.at(BodyId(i)); }},
       {"shape", 2, [&](int i) { scene.at(ShapeId(BodyId(1), i)); }},
       {"body", 2, [&](int i) { scene.at(ShapeId(BodyId(i), 0)); }},
@@ -101,7 +101,7 @@ TEST_CASE("a plan refuses ids of what its scene does not have", "[fast][misuse]"
   const Plan plan = compile(contraption(Space::spatial));
   const int bodies = static_cast<int>(plan.scene().bodies.size());
   const int joints = static_cast<int>(plan.scene().joints.size());
-  check_all({
+  check_calls({
       {"body", bodies, [&](int i) { plan.row(BodyId(i)); }},
       {"body", bodies, [&](int i) { plan.find_row(BodyId(i)); }},
       {"row", plan.bodies(), [&](int i) { plan.body_in_row(i); }},
@@ -140,7 +140,7 @@ TEST_CASE("a batch refuses ids of what its scenes do not have", "[fast][misuse]"
   const auto with_body = [&](std::function<void(BodyId)> f) {
     return Call{"body", bodies, [f = std::move(f)](int i) { f(BodyId(i)); }};
   };
-  check_all({
+  check_calls({
       in_world([&](int i) { batch.kind_of(i); }),
       in_world([&](int i) { batch.bodies(i); }),
       in_world([&](int i) { batch.controls(i); }),
@@ -207,7 +207,7 @@ TEST_CASE("a batch refuses ids of what its scenes do not have", "[fast][misuse]"
 
   Environment environment(tasks::find("Pendulum")->make(), {.worlds = kWorlds});
   const EnvironmentSnapshot saved = environment.save();
-  check_all({
+  check_calls({
       in_world([&](int i) { environment.copy_world(i, 0); }),
       in_world([&](int i) { environment.copy_world(0, i); }),
       in_world([&](int i) { environment.restore(saved, 0, i); }),

@@ -25,7 +25,7 @@ struct Misuse {
   std::function<void()> call;
 };
 
-void check_all(const std::vector<Misuse>& all) {
+void check_misuses(const std::vector<Misuse>& all) {
   for (const Misuse& misuse : all) {
     INFO(misuse.text);
     try {
@@ -188,8 +188,8 @@ const std::vector<Misuse> kNumbers = {
 }  // namespace
 
 TEST_CASE("a value that an enumeration does not have is refused", "[fast][misuse]") {
-  check_all(kEnumsInScenes);
-  check_all(kEnumsInBatches);
+  check_misuses(kEnumsInScenes);
+  check_misuses(kEnumsInBatches);
   for (const Space space : {Space::planar, Space::spatial}) {
     CHECK(validate(contraption(space)).empty());  // what is changed is all that is wrong
   }
@@ -199,7 +199,7 @@ TEST_CASE("a value that an enumeration does not have is refused", "[fast][misuse
   CHECK(to_string(none<Input>(200)) == std::string("unknown"));
 }
 
-TEST_CASE("numbers without sense are refused", "[fast][misuse]") { check_all(kNumbers); }
+TEST_CASE("numbers without sense are refused", "[fast][misuse]") { check_misuses(kNumbers); }
 
 TEST_CASE("what was moved from says so", "[fast][misuse]") {
   Batch batch(plan_of(), {.worlds = 2, .threads = 1});

@@ -7,21 +7,18 @@
 
 #include "tests/support/approx.hpp"
 #include "tests/support/newton_scenes.hpp"
+#include "tests/support/observed.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-BatchOptions observing(const Table& table, int worlds = 1) {
+BatchOptions observing_loads(const Table& table, int worlds = 1) {
   BatchOptions options = options_of(table, worlds);
   options.observe.what = {Observer::joints, Observer::joint_loads, Observer::contacts};
   return options;
 }
-Numbers numbers(const Batch& batch, Observed what, int world = 0) {
-  Numbers out(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
-  batch.read(what, world, out);
-  return out;
-}
+
 Vec3 of_joint(const Batch& batch, Observed what, JointId joint) {
   const Numbers v = numbers(batch, what);
   const auto i = static_cast<std::size_t>(3 * joint.index());
@@ -46,7 +43,7 @@ TEST_CASE("a pendulum in joint coordinates tells what its hinge carries", "[fast
     for (const Table& table : all_tables()) {
       INFO(name(table) << ", " << to_string(integrator));
       const double slack = pick(table, 1e-3, 1e-5) * weight;
-      Batch batch(compile(scene), observing(table));
+      Batch batch(compile(scene), observing_loads(table));
       put_angle(batch, kPi / 2);  // hanging at rest
       batch.step(3);
       CHECK((force_on_b(batch) - Vec3(0, 0, weight)).norm() < slack);
@@ -99,7 +96,7 @@ TEST_CASE("joints in series and fixed ones carry what hangs on them", "[fast][ne
   for (const Table& table : all_tables()) {
     INFO(name(table));
     const double slack = pick(table, 1e-3, 1e-9);
-    Batch batch(compile(scene), observing(table));
+    Batch batch(compile(scene), observing_loads(table));
     batch.step();
     for (const double speed : of(batch, Field::generalized_velocity)) {
       CHECK(speed == Approx(0).margin(pick(table, 1e-5, 1e-12)));
@@ -116,7 +113,7 @@ TEST_CASE("joints in series and fixed ones carry what hangs on them", "[fast][ne
 TEST_CASE("springs, dampers, limits and motors act within their joint, rotors in front of it",
           "[fast][newton][joint]") {
   const auto torque = [](const Scene& scene, const Table& table, double q, double v) {
-    Batch batch(compile(scene), observing(table));
+    Batch batch(compile(scene), observing_loads(table));
     put_angle(batch, q, v);
     batch.step();
     // Of the step itself, dampers as it took them.
@@ -165,7 +162,7 @@ TEST_CASE("what contacts carry, joints do not", "[fast][newton][joint]") {
     scene.joints[0].dynamics.damping = 0.5;
     for (const Table& table : widest_tables()) {
       INFO(name(table) << ", " << to_string(integrator));
-      Batch batch(compile(scene), observing(table));
+      Batch batch(compile(scene), observing_loads(table));
       batch.step(1000);
       const auto contacts = batch.step_contacts(0);
       REQUIRE(contacts.size() == 1);
@@ -190,7 +187,7 @@ TEST_CASE("joints in joint coordinates tell where they are, in their order",
   for (const Table& table : all_tables()) {
     INFO(name(table));
     const double slack = pick(table, 1e-5, 1e-12);
-    Batch batch(plan, observing(table));
+    Batch batch(plan, observing_loads(table));
     batch.look();
     CHECK(numbers(batch, Observed::joint_position)[0] == approx(0.5, slack));
     Numbers q = of(batch, Field::generalized_position), v = of(batch, Field::generalized_velocity);
@@ -224,7 +221,7 @@ TEST_CASE("cone and twist of a ball change by their speeds", "[fast][newton][joi
   const Quat turned(Eigen::AngleAxisd(0.9, Vec3(1, -0.5, 0.3).normalized()));
   for (const Table& table : widest_tables()) {
     if (table.precision != Precision::f64) continue;
-    Batch batch(compile(scene), observing(table));
+    Batch batch(compile(scene), observing_loads(table));
     put(batch, Field::generalized_position, {turned.w(), turned.x(), turned.y(), turned.z()});
     put(batch, Field::generalized_velocity, {1, -2, 0.7});
     batch.look();
@@ -248,7 +245,7 @@ TEST_CASE("what is observed of joints has the bits of its world, and changes non
     Numbers first[2];  // by precision
     for (const Table& table : all_tables()) {
       INFO(name(table) << ", " << to_string(integrator));
-      Batch plain(plan, options_of(table, kWorlds)), seen(plan, observing(table, kWorlds));
+      Batch plain(plan, options_of(table, kWorlds)), seen(plan, observing_loads(table, kWorlds));
       plain.step(60);
       seen.step(40);
       for (int i = 0; i < 20; ++i) seen.step();
@@ -262,7 +259,7 @@ TEST_CASE("what is observed of joints has the bits of its world, and changes non
       CHECK(force_on_b(seen).norm() > 0);
       // In another lane, with others beside it.
       const Snapshot saved = seen.save();
-      Batch one(plan, observing(table));
+      Batch one(plan, observing_loads(table));
       seen.step(3);
       for (const int world : {0, 7, kWorlds - 1}) {
         one.restore(saved, world, 0);

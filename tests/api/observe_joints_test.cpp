@@ -6,29 +6,26 @@
 
 #include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
+#include "tests/support/observed.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-BatchOptions observing(const Table& table, int worlds = 1) {
+BatchOptions observing_joints(const Table& table, int worlds = 1) {
   BatchOptions options = options_of(table, worlds);
   options.observe.what = {Observer::joints, Observer::joint_loads};
   return options;
 }
-std::vector<double> numbers(const Batch& batch, Observed what, int world = 0) {
-  std::vector<double> out(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
-  batch.read(what, world, out);
-  return out;
-}
+
 // Of one joint, in space; torques of the plane are about z.
-Vec3 force_on_b(const Batch& batch, std::size_t joint = 0) {
+Vec3 force_on_second(const Batch& batch, std::size_t joint = 0) {
   const auto f = numbers(batch, Observed::joint_force);
   return batch.plan().scene().space == Space::planar
              ? Vec3(f[2 * joint], f[2 * joint + 1], 0)
              : Vec3(f[3 * joint], f[3 * joint + 1], f[3 * joint + 2]);
 }
-Vec3 torque_on_b(const Batch& batch, std::size_t joint = 0) {
+Vec3 torque_on_second(const Batch& batch, std::size_t joint = 0) {
   const auto l = numbers(batch, Observed::joint_torque);
   return batch.plan().scene().space == Space::planar
              ? Vec3(0, 0, l[joint])
@@ -50,7 +47,7 @@ TEST_CASE("a hinge tells its angle, its speed and what it carries", "[fast][obse
     CHECK(plan.coordinates() == 1);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing(table));
+      Batch batch(plan, observing_joints(table));
       const Vec3 axis = axis_of(space);
       for (int i = 0; i < 5; ++i) {
         batch.step();
@@ -64,8 +61,8 @@ TEST_CASE("a hinge tells its angle, its speed and what it carries", "[fast][obse
       batch.step(600);  // at rest: the drive holds the rod's weight, the hinge carries it
       const Vec3 along = rotation(batch, 0, 0) * Vec3::UnitX();
       const Vec3 weight = -2 * 10 * up_of(space);
-      CHECK((force_on_b(batch) + weight).norm() < 1e-3);
-      CHECK((torque_on_b(batch) + (0.5 * along).cross(weight)).norm() < 1e-3);
+      CHECK((force_on_second(batch) + weight).norm() < 1e-3);
+      CHECK((torque_on_second(batch) + (0.5 * along).cross(weight)).norm() < 1e-3);
       CHECK(std::abs(numbers(batch, Observed::joint_speed)[0]) < 1e-4);
     }
   }
@@ -82,12 +79,12 @@ TEST_CASE("a hinge that turns steadily pulls its body to its axis", "[fast][obse
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing(table));
+      Batch batch(plan, observing_joints(table));
       batch.step(480);  // 6 rad: within (-pi, pi] it is 6 - 2 pi
       CHECK(numbers(batch, Observed::joint_speed)[0] == Approx(3).epsilon(1e-3));
       CHECK(numbers(batch, Observed::joint_position)[0] == approx(6 - 2 * kPi, 0.02));
       const Vec3 along = rotation(batch, 0, 0) * Vec3::UnitX();
-      CHECK((force_on_b(batch) + 2 * 9 * 0.5 * along).norm() < 0.1);
+      CHECK((force_on_second(batch) + 2 * 9 * 0.5 * along).norm() < 0.1);
     }
   }
 }
@@ -119,7 +116,7 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
     CHECK(plan.first_coordinate(JointId(3)) == 4);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing(table));
+      Batch batch(plan, observing_joints(table));
       batch.step(20);  // the rope's weights still fly
       const auto speed = numbers(batch, Observed::joint_speed);
       CHECK(speed[0] == approx(velocity(batch, 0, 0).dot(up), pick(table, 1e-6, 1e-12)));
@@ -127,17 +124,17 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
       CHECK(speed[4] == Approx(0).margin(1e-3));
       CHECK(numbers(batch, Observed::joint_position)[4] == Approx(5 + 2 * 5).epsilon(1e-4));
       // x1 + 2 x2 is constant: T = 3 m1 m2 g / (4 m1 + m2), and B hangs on twice that.
-      CHECK(force_on_b(batch, 3).dot(up) == Approx(2 * 3 * 2 * 1 * 10 / 9.0).epsilon(1e-3));
+      CHECK(force_on_second(batch, 3).dot(up) == Approx(2 * 3 * 2 * 1 * 10 / 9.0).epsilon(1e-3));
       batch.step(300);  // the others are at rest
       const auto place = numbers(batch, Observed::joint_position);
       CHECK(place[0] == Approx(0.5 - 10.0 / 1000).epsilon(1e-4));
       CHECK(place[1] == Approx(-20.0 / 500).epsilon(1e-4));
       CHECK(place[2] == Approx(0).margin(1e-5));
       CHECK(place[3] == Approx(2).epsilon(1e-4));
-      CHECK(force_on_b(batch, 0).dot(up) == Approx(10).epsilon(1e-3));
-      CHECK(force_on_b(batch, 1).dot(up) == Approx(20).epsilon(1e-3));
-      CHECK(force_on_b(batch, 2).dot(up) == Approx(30).epsilon(1e-3));
-      CHECK(torque_on_b(batch, 1).norm() < 1e-3);
+      CHECK(force_on_second(batch, 0).dot(up) == Approx(10).epsilon(1e-3));
+      CHECK(force_on_second(batch, 1).dot(up) == Approx(20).epsilon(1e-3));
+      CHECK(force_on_second(batch, 2).dot(up) == Approx(30).epsilon(1e-3));
+      CHECK(torque_on_second(batch, 1).norm() < 1e-3);
     }
   }
 }
@@ -151,7 +148,7 @@ TEST_CASE("a ball joint tells its cone and its twist", "[fast][observe][joint]")
   scene.bodies[0].position = scene.bodies[0].rotation * Vec3(0, 0, -1);
   for (const Table& table : all_tables()) {
     INFO(name(table));
-    Batch batch(compile(scene), observing(table));
+    Batch batch(compile(scene), observing_joints(table));
     batch.look();
     const auto angles = numbers(batch, Observed::joint_position);
     REQUIRE(angles.size() == 2);
@@ -171,7 +168,7 @@ TEST_CASE("cone and twist of a ball joint change by their speeds", "[fast][obser
     scene.at(ball).rotation = Quat(Eigen::AngleAxisd(cone, Vec3(0.6, 0.8, 0))) *
                               Quat(Eigen::AngleAxisd(-0.4, Vec3::UnitZ()));
     if (!has_table(double_table())) return;
-    Batch batch(compile(scene), observing(double_table()));
+    Batch batch(compile(scene), observing_joints(double_table()));
     batch.look();
     const auto before = numbers(batch, Observed::joint_position),
                speed = numbers(batch, Observed::joint_speed);
@@ -193,11 +190,11 @@ TEST_CASE("a fixed joint carries what hangs on it", "[fast][observe][joint]") {
     CHECK(plan.coordinates() == 0);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing(table, 3));
+      Batch batch(plan, observing_joints(table, 3));
       batch.step(300);
       const Vec3 weight = -2 * 10 * up_of(space);
-      CHECK((force_on_b(batch) + weight).norm() < 1e-3);
-      CHECK((torque_on_b(batch) + Vec3(0.5, 0, 0).cross(weight)).norm() < 2e-3);
+      CHECK((force_on_second(batch) + weight).norm() < 1e-3);
+      CHECK((torque_on_second(batch) + Vec3(0.5, 0, 0).cross(weight)).norm() < 2e-3);
       CHECK(numbers(batch, Observed::joint_position).empty());
       std::vector<float> all(batch.size(Observed::joint_force));
       batch.read(Observed::joint_force, all);
@@ -228,7 +225,7 @@ TEST_CASE("joints are seen at the state after a reset, without a step", "[fast][
     scene.add(uniform_rod(Space::planar, 1, 1, {0.5, 0, 0}));
     scene.bodies[0].angular_velocity.z() = 2;
     scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), HingeJoint{}));
-    Batch batch(compile(scene), observing(table, 2));
+    Batch batch(compile(scene), observing_joints(table, 2));
     batch.step(30);
     REQUIRE(numbers(batch, Observed::joint_position)[0] > 0.2);
     batch.reset(std::vector<std::uint8_t>{0, 1});

@@ -21,7 +21,7 @@ std::vector<Vec3> read(const Batch& batch, Observed what, int world = 0) {
   return out;
 }
 
-BatchOptions observing(const Table& table, std::vector<Point> points, int worlds = 1) {
+BatchOptions observing_points(const Table& table, std::vector<Point> points, int worlds = 1) {
   BatchOptions options = options_of(table, worlds);
   options.observe.points = std::move(points);
   return options;
@@ -42,7 +42,7 @@ TEST_CASE("a point of a spinning rod has the velocity v + w x r", "[fast][observ
     for (const Table& table : all_tables()) {
       INFO(name(table));
       Batch batch(compile(scene),
-                  observing(table, {{{2, 0, 0}, BodyId(0)}, {{0, 0, 0}, BodyId(0)}}));
+                  observing_points(table, {{{2, 0, 0}, BodyId(0)}, {{0, 0, 0}, BodyId(0)}}));
       const double near = pick(table, 1e-4, 1e-10);
       batch.look();
       auto x = read(batch, Observed::point_position), v = read(batch, Observed::point_velocity);
@@ -73,7 +73,7 @@ TEST_CASE("points go where the frames of their bodies go, in worlds that differ"
     }
     for (const Table& table : widest_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing(table, points, 7));
+      Batch batch(plan, observing_points(table, points, 7));
       const double near = pick(table, 1e-4, 1e-9);
       for (int call = 0; call < 5; ++call) {
         batch.step(9);
@@ -102,12 +102,13 @@ TEST_CASE("points that make no sense are refused, all that is wrong with them at
   const Plan plan = compile(scene);
   const Table table = widest_tables().front();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH(Batch(plan, observing(table, {{{0, 0, 0}, BodyId(0)}})),
+  CHECK_THROWS_WITH(Batch(plan, observing_points(table, {{{0, 0, 0}, BodyId(0)}})),
                     "points[0].body is body 0 'ground', must be a body that can move: points of a "
                     "fixed body do not move");
-  CHECK_THROWS_WITH(Batch(plan, observing(table, {{}})), "points[0].body is -1, must be 0 to 1");
+  CHECK_THROWS_WITH(Batch(plan, observing_points(table, {{}})),
+                    "points[0].body is -1, must be 0 to 1");
   CHECK_THROWS_WITH(
-      Batch(plan, observing(table, {{{0, 0, 0}, BodyId(1)}, {{0, nan, 0}, BodyId(2)}})),
+      Batch(plan, observing_points(table, {{{0, 0, 0}, BodyId(1)}, {{0, nan, 0}, BodyId(2)}})),
       Catch::Contains("points[1].position is ") &&
           Catch::Contains("must be finite; points[1].body is 2, must be 0 to 1"));
   BatchOptions options = options_of(table);

@@ -21,7 +21,7 @@ Ray ray_of(const Vec3& origin, const Vec3& direction) {
 }
 
 // The shape on a body at `at` that does not move, or is fixed, and a ball out of every ray's way.
-Scene target(Space space, const Shape& shape, const Vec3& at, Motion motion) {
+Scene target_scene(Space space, const Shape& shape, const Vec3& at, Motion motion) {
   Scene scene = empty_scene(space, 0);
   scene.add(body_of(shape, at, motion));
   scene.add(body_of(shape_of(round_of(space, 0.1)), Vec3(0, 1000, 0)));
@@ -47,7 +47,7 @@ void check_cases(Space space, const Geometry& geometry, const std::vector<Case>&
                                                 Motion::fixed}) {
   const Vec3 at = space == Space::planar ? Vec3(3, -2, 0) : Vec3(3, -2, 5);
   for (Motion motion : motions) {
-    const Scene scene = target(space, shape_of(geometry), at, motion);
+    const Scene scene = target_scene(space, shape_of(geometry), at, motion);
     std::vector<Ray> rays;
     for (const Case& c : cases) rays.push_back(ray_of(c.ray.origin + at, c.ray.direction));
     for (const Table& table : all_tables()) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/newton_scenes.hpp"
+#include "tests/support/observed.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied.hpp"
@@ -13,11 +14,6 @@
 namespace manyworlds::test {
 namespace {
 
-Numbers read(const Batch& batch, Observed what, int world) {
-  Numbers out(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
-  batch.read(what, world, out);
-  return out;
-}
 bool same_bits(const Numbers& a, const Numbers& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
@@ -82,8 +78,8 @@ TEST_CASE("sites of other solvers are where points are", "[fast][observe]") {
       for (int call = 0; call < 3; ++call) {
         batch.step(9);
         for (int world = 0; world < 7; ++world) {
-          Numbers sites = read(batch, Observed::site_position, world);
-          const Numbers points = read(batch, Observed::point_position, world);
+          Numbers sites = numbers(batch, Observed::site_position, world);
+          const Numbers points = numbers(batch, Observed::point_position, world);
           REQUIRE(sites.size() == points.size() + 2 * dim);
           const Vec3 of_fixed = scene.at(fixed).position + scene.at(fixed).rotation * arm;
           for (std::size_t c = 0; c < dim; ++c) {
@@ -120,9 +116,9 @@ TEST_CASE("sites and tendons of trees are where the last forces were found",
       const double near = pick(table, 1e-5, 1e-12);
       // What the state itself says.
       const auto expected = [&](int world) {
-        Numbers out = read(batch, Observed::point_position, world);
-        const Numbers q = read(batch, Observed::joint_position, world);
-        const Numbers v = read(batch, Observed::joint_speed, world);
+        Numbers out = numbers(batch, Observed::point_position, world);
+        const Numbers q = numbers(batch, Observed::joint_position, world);
+        const Numbers v = numbers(batch, Observed::joint_speed, world);
         for (const Tendon& tendon : scene.tendons) {
           double length = 0, velocity = 0;
           for (const TendonTerm& term : tendon.terms) {
@@ -134,14 +130,14 @@ TEST_CASE("sites and tendons of trees are where the last forces were found",
         return out;
       };
       const auto check = [&](int world, const Numbers& wanted) {
-        const Numbers sites = read(batch, Observed::site_position, world);
+        const Numbers sites = numbers(batch, Observed::site_position, world);
         Numbers found;
         for (const BodyId body : seen) {
           const auto at = sites.begin() + 3 * body.index();
           found.insert(found.end(), at, at + 3);
         }
-        const Numbers length = read(batch, Observed::tendon_length, world);
-        const Numbers velocity = read(batch, Observed::tendon_velocity, world);
+        const Numbers length = numbers(batch, Observed::tendon_length, world);
+        const Numbers velocity = numbers(batch, Observed::tendon_velocity, world);
         for (std::size_t t = 0; t < length.size(); ++t) {
           found.push_back(length[t]), found.push_back(velocity[t]);
         }
@@ -188,7 +184,7 @@ TEST_CASE("sites and tendons have the bits of their world alone, and change none
           Numbers& own = all.emplace_back();
           for (const Observed what :
                {Observed::site_position, Observed::tendon_length, Observed::tendon_velocity}) {
-            const Numbers v = read(batch, what, w);
+            const Numbers v = numbers(batch, what, w);
             own.insert(own.end(), v.begin(), v.end());
           }
         }

@@ -8,6 +8,7 @@
 #include "tests/support/approx.hpp"
 #include "tests/support/joints.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
 
@@ -72,11 +73,6 @@ Scene varied_planets(Space space) {
   vary_around(scene, Parameter::attractor_position, 0.5);
   vary_around(scene, Parameter::attractor_strength, 1);
   return scene;
-}
-
-std::string only_issue(const Scene& scene) {
-  const std::vector<Issue> issues = validate(scene);
-  return issues.size() == 1 ? to_string(issues[0]) : std::to_string(issues.size()) + " issues";
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ std::vector<double> impulses_above(const Batch& batch, int first) {
 }
 
 // Impulses that reach different worlds at different times, by world and not by its place.
-void disturb(Batch& batch, int first_world, int step) {
+void disturb_worlds(Batch& batch, int first_world, int step) {
   for (int w = 0; w < batch.worlds(); ++w) {
     const int id = first_world + w;
     if (step % 90 != (id * 17) % 90 || id % 3 == 0) continue;
@@ -64,7 +64,7 @@ struct Result {
 Result run_disturbed(const Plan& plan, const BatchOptions& options, int first, int steps) {
   Batch batch(plan, options);
   for (int i = 0; i < steps; ++i) {
-    disturb(batch, first, i);
+    disturb_worlds(batch, first, i);
     batch.step();
   }
   Result result;

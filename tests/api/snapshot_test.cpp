@@ -32,7 +32,7 @@ Scene drowsy_crowd(Space space) {
   return scene;
 }
 
-void disturb(Batch& batch) {
+void disturb_batch(Batch& batch) {
   for (int w = 0; w < batch.worlds(); w += 3)
     batch.set_enabled(w, in_row(batch, w, w % batch.bodies(w)), false);
 }
@@ -48,7 +48,7 @@ TEST_CASE("a saved world goes on bit by bit in any batch", "[fast][snapshot][bit
                          << sleep);
         Batch batch(plan, with_sleep(options_of(table, 21), sleep));
         batch.step(40);
-        disturb(batch);
+        disturb_batch(batch);
         batch.step(5);
         const Snapshot saved = batch.save();
         const auto now = hashes(batch);

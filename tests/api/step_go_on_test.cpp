@@ -12,7 +12,7 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr int kWorlds = 9;
+constexpr int kSteppedWorlds = 9;
 
 struct Steps final : BatchListener {
   std::vector<int> calls;
@@ -29,11 +29,12 @@ struct Driven {
   std::shared_ptr<Steps> heard = std::make_shared<Steps>();
 
   explicit Driven(const Scene& scene, bool sleep = false) : batch(compile(scene), options(sleep)) {
-    for (int w = 0; w < kWorlds; ++w) batch.add_force(w, batch.body_in_row(1), Vec3(0.5 * w, 1, 0));
+    for (int w = 0; w < kSteppedWorlds; ++w)
+      batch.add_force(w, batch.body_in_row(1), Vec3(0.5 * w, 1, 0));
     batch.listen(heard);
   }
   static BatchOptions options(bool sleep) {
-    BatchOptions out = options_of(widest_tables().front(), kWorlds, 2);
+    BatchOptions out = options_of(widest_tables().front(), kSteppedWorlds, 2);
     out.sleep = sleep;
     out.observe.what = {Observer::contacts, Observer::touching, Observer::motion};
     return out;
@@ -49,7 +50,7 @@ void check_equal(const Batch& a, const Batch& b) {
   CHECK(a.steps() == b.steps());
   CHECK(hashes(a) == hashes(b));
   CHECK(a.forces_pending() == b.forces_pending());
-  for (int w = 0; w < kWorlds; ++w) {
+  for (int w = 0; w < kSteppedWorlds; ++w) {
     const auto seen = a.step_contacts(w), wanted = b.step_contacts(w);
     REQUIRE(seen.size() == wanted.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -117,10 +118,10 @@ TEST_CASE("a question that throws ends the call as a no does", "[fast][batch]") 
   whole.batch.step(taken);
   check_equal(thrown.batch, whole.batch);
 
-  const std::vector<std::uint8_t> all(kWorlds, 1);
+  const std::vector<std::uint8_t> all(kSteppedWorlds, 1);
   CHECK_THROWS_AS(thrown.batch.step(all, 1'000'000, throws_at(1)), Enough);
   CHECK(thrown.batch.steps() == taken);  // steps with a mask do not count
-  CHECK(thrown.heard->resets == kWorlds);
+  CHECK(thrown.heard->resets == kSteppedWorlds);
 
   // The clock of step_to has moved by what was stepped: what is due is still due.
   Driven timed(scene);
@@ -148,11 +149,11 @@ TEST_CASE("steps of some worlds alone ask, too", "[fast][batch]") {
 }
 
 TEST_CASE("measuring contacts can be ended", "[fast][batch]") {
-  Batch batch(compile(crowd(Space::planar)), options_of(widest_tables().front(), kWorlds));
+  Batch batch(compile(crowd(Space::planar)), options_of(widest_tables().front(), kSteppedWorlds));
   batch.step(60);
   int questions = 0;
   const ContactSummary whole = batch.measure_contacts([&] { return ++questions > 0; });
-  CHECK(questions > kWorlds);
+  CHECK(questions > kSteppedWorlds);
   CHECK(whole.points_per_world == batch.measure_contacts().points_per_world);
   CHECK(whole.points_per_world > 0);
   CHECK(whole.mean_occupancy == batch.measure_contacts().mean_occupancy);

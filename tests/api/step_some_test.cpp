@@ -14,14 +14,14 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr int kWorlds = 21, kSteps = 70;
+constexpr int kMaskedWorlds = 21, kSteps = 70;
 
 using Kinds = std::vector<Batch::Kind>;
 using Mask = std::vector<std::uint8_t>;
-using Numbers = std::vector<std::vector<double>>;  // [world]
+using NumbersOfWorlds = std::vector<std::vector<double>>;  // [world]
 
 BatchOptions watched(const Table& table, int threads) {
-  BatchOptions options = options_of(table, kWorlds, threads);
+  BatchOptions options = options_of(table, kMaskedWorlds, threads);
   options.seed = 11;
   options.observe.what = {Observer::touching, Observer::motion, Observer::residual};
   return options;
@@ -43,8 +43,8 @@ std::vector<double> numbers_of(const Batch& batch, int world) {
   }
   return all;
 }
-Numbers numbers_of(const Batch& batch) {
-  Numbers all;
+NumbersOfWorlds numbers_of(const Batch& batch) {
+  NumbersOfWorlds all;
   for (int w = 0; w < batch.worlds(); ++w) all.push_back(numbers_of(batch, w));
   return all;
 }
@@ -59,7 +59,7 @@ void apply_force(Batch& batch, int world, int taken) {
 
 void check_against_steps_of_all(const Kinds& kinds, const BatchOptions& options) {
   Batch all(kinds, options);
-  std::vector<Numbers> path;  // [steps taken]
+  std::vector<NumbersOfWorlds> path;  // [steps taken]
   for (int step = 0; step <= kSteps; ++step) {
     path.push_back(numbers_of(all));
     for (int w = 0; w < all.worlds(); ++w) apply_force(all, w, step);
@@ -79,9 +79,9 @@ void check_against_steps_of_all(const Kinds& kinds, const BatchOptions& options)
           turn % 9 == 8 ? w == static_cast<std::size_t>(turn) % taken.size() : random.chance(0.4);
       mask[w] = w != 3 && chosen && taken[w] < kSteps;
     }
-    const Numbers before = numbers_of(some);
+    const NumbersOfWorlds before = numbers_of(some);
     some.step(mask);
-    const Numbers after = numbers_of(some);
+    const NumbersOfWorlds after = numbers_of(some);
     for (std::size_t w = 0; w < taken.size(); ++w) {
       if (mask[w] == 0) {
         touched += after[w] != before[w];
@@ -120,7 +120,7 @@ TEST_CASE("worlds that step alone go the way that they go when all step", "[batc
     for (const Table& table : widest_tables()) {
       for (const int threads : {1, 3}) {
         CAPTURE(name(table), threads, space == Space::planar);
-        check_against_steps_of_all({{plan, kWorlds}}, watched(table, threads));
+        check_against_steps_of_all({{plan, kMaskedWorlds}}, watched(table, threads));
       }
     }
   }
@@ -138,7 +138,7 @@ TEST_CASE("worlds that step alone may sleep, and be of several kinds", "[batch][
     CAPTURE(name(table));
     BatchOptions options = watched(table, 2);
     options.sleep = true;
-    check_against_steps_of_all({{compile(drowsy), kWorlds}}, options);
+    check_against_steps_of_all({{compile(drowsy), kMaskedWorlds}}, options);
     check_against_steps_of_all({{compile(drowsy), 9}, {compile(small), 12}}, options);
     Batch probe(compile(drowsy), options);
     probe.step(kSteps);
@@ -151,7 +151,7 @@ TEST_CASE("joints and controls step alone, too", "[batch][fast][bits]") {
   const Plan plan = compile(scenes::find("lunar-lander")->make());
   for (const Table& table : widest_tables()) {
     CAPTURE(name(table));
-    check_against_steps_of_all({{plan, kWorlds}}, watched(table, 1));
+    check_against_steps_of_all({{plan, kMaskedWorlds}}, watched(table, 1));
   }
 }
 

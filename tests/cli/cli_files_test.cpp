@@ -15,6 +15,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/program_checks.hpp"
 #include "tests/support/running.hpp"
 
 namespace manyworlds {
@@ -23,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-using test::contains, test::content, test::Outcome, test::Running;
+using test::check_one_line, test::contains, test::content, test::Outcome, test::Running;
 
-struct Folder : test::ProgramFolder {
+struct FilesFolder : test::ProgramFolder {
   std::vector<std::string> parts() const {
     std::vector<std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(path())) {
@@ -35,21 +36,11 @@ struct Folder : test::ProgramFolder {
   }
 };
 
-bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
-
-void check_one_line(const Outcome& outcome, const std::string& message) {
-  INFO(outcome.err);
-  CHECK(outcome.code == 2);
-  CHECK(contains(outcome.err, message));
-  CHECK(outcome.err.rfind("manyworlds: ", 0) == 0);
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-}
-
 }  // namespace
 
 TEST_CASE("the program writes over nothing but files", "[cli][files]") {
-  const Folder folder;
-  if (records(folder)) {
+  const FilesFolder folder;
+  if (test::program_records()) {
     const std::string run = "run ball3d --worlds 4 --steps 2 --record ";
     check_one_line(folder.run(run + "/dev/null"), "'/dev/null': is a device, not a file");
     CHECK(fs::is_character_file("/dev/null"));
@@ -70,10 +61,10 @@ TEST_CASE("the program writes over nothing but files", "[cli][files]") {
 
 // A file of more blocks than `ulimit -f` brings SIGXFSZ.
 TEST_CASE("where a file may not grow the program says so, and ends by no signal", "[cli][files]") {
-  const Folder folder;
+  const FilesFolder folder;
   const std::string limit = "ulimit -f 4000;";  // 2 MB: reached after some samples
   const char* why = "the file would be larger than this process may write (ulimit -f)";
-  if (records(folder)) {
+  if (test::program_records()) {
     const Outcome run =
         folder.run("run bin-boxes --worlds 64 --steps 60 --record run.h5 --json", limit);
     check_one_line(run, std::string("'run.h5': ") + why);
@@ -91,8 +82,8 @@ TEST_CASE("where a file may not grow the program says so, and ends by no signal"
 }
 
 TEST_CASE("an interrupted run sums up, and its recording replays", "[cli][files]") {
-  const Folder folder;
-  const bool recorded = records(folder);
+  const FilesFolder folder;
+  const bool recorded = test::program_records();
   std::vector<std::string> job = {"run",     "ball3d",     "--worlds", "64",
                                   "--steps", "2000000000", "--json"};
   if (recorded) job.insert(job.end(), {"--record", "run.h5", "--record-every", "1000"});
@@ -111,7 +102,7 @@ TEST_CASE("an interrupted run sums up, and its recording replays", "[cli][files]
 }
 
 TEST_CASE("interrupted soaks, benches and reports tell what was done", "[cli][files]") {
-  const Folder folder;
+  const FilesFolder folder;
   {
     Running soak(folder, {"soak", "ball3d", "--worlds", "8", "--steps", "2000000000"});
     REQUIRE(soak.is_ready());
@@ -144,8 +135,8 @@ TEST_CASE("interrupted soaks, benches and reports tell what was done", "[cli][fi
 }
 
 TEST_CASE("what a killed run had recorded is found by the next, and replays", "[cli][files]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilesFolder folder;
+  if (!test::program_records()) return;
   {
     Running running(folder, {"run", "ball3d", "--worlds", "64", "--steps", "2000000000", "--record",
                              "run.h5", "--record-every", "64", "--record-flush", "0"});

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using test::contains, test::content, test::Outcome;
 
-struct Folder : test::ProgramFolder {
-  Folder() {
+struct FilmFolder : test::ProgramFolder {
+  FilmFolder() {
     write("viewer.html",
           "<meta name=\"manyworlds-page\" content=\"1\"><!-- manyworlds: recordings -->");
     // Links, so that they can be taken away.
@@ -62,8 +62,6 @@ struct Folder : test::ProgramFolder {
   }
 };
 
-bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
-
 constexpr const char* kShort = "view ball3d --worlds 2 --seconds 0.1 --mp4 film.mp4 ";
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -76,8 +74,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("films have a frame for each moment, in order", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilmFolder folder;
+  if (!test::program_records()) return;
   const std::string name = "it's \"my\" $film;*.mp4";
   const Outcome made = folder.run(
       "view ball3d --worlds 2 --seconds 0.1 --fps 4 --speed 0.5 --begin 0.25 --end 1 --size "
@@ -106,8 +104,8 @@ TEST_CASE("films have a frame for each moment, in order", "[cli]") {
 }
 
 TEST_CASE("pictures are of one moment", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilmFolder folder;
+  if (!test::program_records()) return;
   const Outcome both = folder.run(
       "view ball3d --worlds 2 --seconds 0.1 --png a.png --time 1.5 --out page.html --size 65x99");
   INFO(both.err);
@@ -123,8 +121,8 @@ TEST_CASE("pictures are of one moment", "[cli]") {
 }
 
 TEST_CASE("times of films and pictures have their former names, too", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilmFolder folder;
+  if (!test::program_records()) return;
   const Outcome made = folder.run(
       "view ball3d --worlds 2 --seconds 0.1 --at 0.5 --until 1 --fps 2 --mp4 film.mp4 --png a.png");
   INFO(made.err);
@@ -135,8 +133,8 @@ TEST_CASE("times of films and pictures have their former names, too", "[cli]") {
 }
 
 TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilmFolder folder;
+  if (!test::program_records()) return;
   const auto bad = [&](const std::string& mode, const std::string& message) {
     folder.check_bad(folder.run(kShort, mode), message);
   };
@@ -168,8 +166,8 @@ TEST_CASE("films say what is wrong, and leave nothing", "[cli]") {
 }
 
 TEST_CASE("films refuse options that they cannot have", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilmFolder folder;
+  if (!test::program_records()) return;
   const auto bad = [&](const std::string& options, const std::string& message) {
     folder.check_bad(folder.run("view ball3d " + options), message);
   };
@@ -192,8 +190,8 @@ TEST_CASE("films refuse options that they cannot have", "[cli]") {
 }
 
 TEST_CASE("a film that is interrupted leaves nothing", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const FilmFolder folder;
+  if (!test::program_records()) return;
   for (const auto& [name, code] : {std::pair{"INT", 130}, {"TERM", 143}}) {
     fs::remove(folder / "browser_waits");
     // With job control, without which a shell has programs in the background ignore SIGINT.

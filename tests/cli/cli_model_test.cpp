@@ -40,11 +40,6 @@ const char* const kRobot = R"(<mujoco>
 <keyframe><key name="ready" qvel="0 0 0 0 0 0 0 0 0 0.5 0" ctrl="0.25"/></keyframe>
 </mujoco>)";
 
-bool model_reads_mjcf() {
-  return contains(test::run_program(test::kProgram, ScratchFolder(), "info").out,
-                  "mjcf         yes");
-}
-
 Outcome model_of(const std::string& xml, const std::string& arguments = "") {
   const ScratchFolder folder;
   std::ofstream(folder / "robot.xml") << xml;
@@ -54,7 +49,7 @@ Outcome model_of(const std::string& xml, const std::string& arguments = "") {
 }  // namespace
 
 TEST_CASE("model prints the tree of a robot and all that acts on it", "[cli]") {
-  if (!model_reads_mjcf()) return;
+  if (!test::program_reads_mjcf()) return;
   const Outcome text = model_of(kRobot);
   CHECK(text.code == 0);
   CHECK(text.err.empty());
@@ -75,7 +70,7 @@ TEST_CASE("model prints the tree of a robot and all that acts on it", "[cli]") {
 }
 
 TEST_CASE("model --json has the places of joints in the coordinates", "[cli]") {
-  if (!model_reads_mjcf()) return;
+  if (!test::program_reads_mjcf()) return;
   const auto json = nlohmann::json::parse(model_of(kRobot, "--json").out);
   CHECK(json["nq"] == 13);
   CHECK(json["nv"] == 11);
@@ -102,7 +97,7 @@ TEST_CASE("model --json has the places of joints in the coordinates", "[cli]") {
 }
 
 TEST_CASE("run and soak begin, and reset, at a keyframe", "[cli]") {
-  if (!model_reads_mjcf()) return;
+  if (!test::program_reads_mjcf()) return;
   const ScratchFolder folder;
   std::ofstream(folder / "robot.xml") << kRobot;
   const auto run = [&](const std::string& arguments) {
@@ -135,7 +130,7 @@ TEST_CASE("model takes scenes that have a name, without coordinates", "[cli]") {
 }
 
 TEST_CASE("model refuses with all problems of a file, a line each", "[cli]") {
-  if (!model_reads_mjcf()) return;
+  if (!test::program_reads_mjcf()) return;
   std::string bad = kRobot;
   bad.replace(bad.find("damping=\"2\""), 11, "frictionloss=\"2\"");
   bad.replace(bad.find("armature=\"0.02\""), 15, "frictionloss=\"1\"");

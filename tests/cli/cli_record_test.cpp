@@ -11,6 +11,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/program_checks.hpp"
 
 namespace manyworlds {
 namespace {
@@ -20,32 +21,20 @@ using Json = nlohmann::json;
 
 using test::contains, test::Outcome;
 
-using Folder = test::ProgramFolder;
-
-void check_bad(const Outcome& outcome, const char* message) {
-  CHECK(outcome.code == 2);
-  CHECK(outcome.out.empty());
-  INFO(outcome.err);
-  CHECK(contains(outcome.err, message));
-  CHECK(outcome.err.rfind("manyworlds: ", 0) == 0);
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-}
-
-bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
-
 }  // namespace
 
 TEST_CASE("without recordings the program says how to get them", "[cli]") {
-  const Folder folder;
-  if (records(folder)) return;
-  check_bad(folder.run("run ball3d --steps 2 --record run.h5"), "cmake -D MW_RECORD=ON");
-  check_bad(folder.run("soak ball3d --steps 2 --dump-lost lost"), "cmake -D MW_RECORD=ON");
-  check_bad(folder.run("replay run.h5"), "cmake -D MW_RECORD=ON");
+  const test::ProgramFolder folder;
+  if (test::program_records()) return;
+  test::check_refused(folder.run("run ball3d --steps 2 --record run.h5"), "cmake -D MW_RECORD=ON");
+  test::check_refused(folder.run("soak ball3d --steps 2 --dump-lost lost"),
+                      "cmake -D MW_RECORD=ON");
+  test::check_refused(folder.run("replay run.h5"), "cmake -D MW_RECORD=ON");
 }
 
 TEST_CASE("run --record and replay end in the same bits", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const test::ProgramFolder folder;
+  if (!test::program_records()) return;
   const std::string job = "run mixed-pile2d --worlds 40 --steps 60 --seed 3 ";
   const Outcome plain = folder.run(job + "--json");
   const Outcome run =
@@ -74,12 +63,12 @@ TEST_CASE("run --record and replay end in the same bits", "[cli]") {
 }
 
 TEST_CASE("what cannot be recorded or replayed is bad input", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const test::ProgramFolder folder;
+  if (!test::program_records()) return;
   const std::string run = "run ball3d --worlds 8 --steps 2 ";
   const auto bad = [&](const std::string& arguments, const char* message) {
     INFO(arguments);
-    check_bad(folder.run(arguments), message);
+    test::check_refused(folder.run(arguments), message);
   };
   for (const char* list : {"x", "1-", "3-1", "1,,2", "1,", "1 2", "99999999999"}) {
     bad(run + "--record a.h5 --record-worlds '" + list + "'", "--record-worlds");
@@ -99,8 +88,8 @@ TEST_CASE("what cannot be recorded or replayed is bad input", "[cli]") {
 }
 
 TEST_CASE("lost worlds are dumped, and a replay loses them again", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const test::ProgramFolder folder;
+  if (!test::program_records()) return;
   // Bodies that fly at about 1 m/s leave the range of 1e10 m in one such step.
   const Outcome run =
       folder.run("run free-flight --steps 2 --dt 1e12 --worlds 20 --dump-lost lost");
@@ -114,7 +103,8 @@ TEST_CASE("lost worlds are dumped, and a replay loses them again", "[cli]") {
 
   CHECK(folder.run("soak free-flight --steps 2 --dt 1e12 --worlds 3 --dump-lost s").code == 1);
   CHECK(folder.run("replay s/world_2.h5").code == 0);
-  check_bad(folder.run("soak ball3d --steps 2 --worlds 2 --seed 1 --dump-lost out"), "'out'");
+  test::check_refused(folder.run("soak ball3d --steps 2 --worlds 2 --seed 1 --dump-lost out"),
+                      "'out'");
 }
 
 }  // namespace manyworlds

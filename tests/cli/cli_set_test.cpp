@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 using test::contains, test::Outcome;
 
-Outcome run(const std::string& arguments) {
+Outcome run_set(const std::string& arguments) {
   return test::run_program(test::kProgram, test::ScratchFolder(), arguments);
 }
 
@@ -49,7 +49,8 @@ TEST_CASE("what cannot be set is told in a line", "[cli]") {
       {"substeps=65", "options.substeps is 65, must be between 1 and 64"}};
   for (const Bad& bad : cases) {
     INFO(bad.set);
-    const Outcome outcome = run(std::string("run ball3d --worlds 1 --steps 1 --set ") + bad.set);
+    const Outcome outcome =
+        run_set(std::string("run ball3d --worlds 1 --steps 1 --set ") + bad.set);
     CHECK(outcome.code == 2);
     CHECK(outcome.out.empty());
     CHECK(contains(outcome.err, bad.message));
@@ -59,7 +60,7 @@ TEST_CASE("what cannot be set is told in a line", "[cli]") {
 TEST_CASE("setting an option with --set does what its flag does", "[cli]") {
   const auto json = [](const std::string& arguments) {
     const Outcome outcome =
-        run("run stack10 --worlds 2 --steps 20 --threads 1 --json " + arguments);
+        run_set("run stack10 --worlds 2 --steps 20 --threads 1 --json " + arguments);
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     return Json::parse(outcome.out);
@@ -71,7 +72,7 @@ TEST_CASE("setting an option with --set does what its flag does", "[cli]") {
   CHECK(set["solver"] == "sor");
   CHECK(json("--dt 0.01 --set dt=0.02")["dt"] == 0.02);  // the last word
   const auto chain = [](const std::string& joints) {
-    return Json::parse(run("run chain3d --worlds 2 --steps 20 --json " + joints).out)["hash"];
+    return Json::parse(run_set("run chain3d --worlds 2 --steps 20 --json " + joints).out)["hash"];
   };
   CHECK(chain("--joints tree") == chain("--set joint.method=tree"));
   CHECK(chain("--joints tree") != chain("--joints sweep"));
@@ -81,15 +82,15 @@ TEST_CASE("setting an option with --set does what its flag does", "[cli]") {
 }
 
 TEST_CASE("a lost world's command has what was set", "[cli]") {
-  const Outcome outcome = run("run free-flight --worlds 1 --steps 2 --set dt=1e12 --seed 4");
+  const Outcome outcome = run_set("run free-flight --worlds 1 --steps 2 --set dt=1e12 --seed 4");
   CHECK(outcome.code == 1);
   CHECK(contains(outcome.err, " --set 'dt=1e12'"));
 }
 
 TEST_CASE("info --options lists what --set takes, with the defaults", "[cli]") {
-  CHECK(contains(run("info --options").out, "contact.slop "));
+  CHECK(contains(run_set("info --options").out, "contact.slop "));
   std::string all;
-  for (const Json& option : Json::parse(run("info --options --json").out)) {
+  for (const Json& option : Json::parse(run_set("info --options --json").out)) {
     const std::string path = option["path"];
     CHECK_FALSE(option["takes"].get<std::string>().empty());
     if (path == "contact.damping_ratio") CHECK(option["default"] == "10");
@@ -97,7 +98,7 @@ TEST_CASE("info --options lists what --set takes, with the defaults", "[cli]") {
     all += " --set " + path + "=" + option["default"].get<std::string>();
   }
   // Ball and defaults: what they are anyway, but for the scene's own gravity and bounds.
-  const Outcome outcome = run("run ball3d --worlds 1 --steps 1" + all);
+  const Outcome outcome = run_set("run ball3d --worlds 1 --steps 1" + all);
   INFO(outcome.err);
   CHECK(outcome.code == 0);
 }

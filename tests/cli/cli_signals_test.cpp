@@ -23,10 +23,6 @@ using Json = nlohmann::json;
 using test::contains, test::content, test::Outcome, test::ProgramFolder, test::Running;
 using Words = std::vector<std::string>;
 
-bool has(const ProgramFolder& folder, const std::string& line) {
-  return contains(folder.run("info").out, line);
-}
-
 Outcome interrupted(const ProgramFolder& folder, const Words& arguments, int number) {
   Running running(folder, arguments, {"MANYWORLDS_VIEWER=viewer.html"});
   REQUIRE(running.is_ready());
@@ -36,17 +32,12 @@ Outcome interrupted(const ProgramFolder& folder, const Words& arguments, int num
   return outcome;
 }
 
-void write_empty_page(const ProgramFolder& folder) {
-  std::ofstream(folder / "viewer.html")
-      << "<meta name=\"manyworlds-page\" content=\"1\"><!-- manyworlds: recordings -->";
-}
-
 }  // namespace
 
 TEST_CASE("a page that was cut says so", "[cli][signals]") {
   const ProgramFolder folder;
-  if (!has(folder, "recordings   yes")) return;
-  write_empty_page(folder);
+  if (!test::program_has("recordings   yes")) return;
+  test::write_empty_page(folder);
   Words view = {"view", "ball3d", "stack10", "--worlds", "8", "--seconds", "1000000"};
   view.insert(view.end(), {"--out", "page.html"});
   for (const bool json : {false, true}) {
@@ -82,7 +73,7 @@ TEST_CASE("an interrupted verify counts what it has compared", "[cli][signals]")
 
 TEST_CASE("an interrupted replay says how far it came", "[cli][signals]") {
   const ProgramFolder folder;
-  if (!has(folder, "recordings   yes")) return;
+  if (!test::program_has("recordings   yes")) return;
   REQUIRE(folder.run("run bin2d --worlds 64 --steps 4000 --record run.h5 --record-every 40").code ==
           0);
   for (const bool json : {false, true}) {
@@ -104,7 +95,7 @@ TEST_CASE("an interrupted replay says how far it came", "[cli][signals]") {
 
 TEST_CASE("an interrupted comparison with MuJoCo prints what it has found", "[cli][signals]") {
   const ProgramFolder folder;
-  if (!has(folder, "mjcf         yes")) return;
+  if (!test::program_has("mjcf         yes")) return;
   const std::string model = std::string(test::kSourceFolder) + "/scenes/mjcf/robot_hopper.xml";
   for (const bool json : {false, true}) {
     Words compare = {"compare", model, "--worlds", "8", "--steps", "100000000", "--no-speed"};

@@ -13,6 +13,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/program_checks.hpp"
 
 namespace manyworlds {
 namespace {
@@ -20,31 +21,21 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-using test::contains, test::content, test::Outcome;
+using test::check_one_line, test::contains, test::content, test::Outcome;
 
-struct Folder : test::ProgramFolder {
+struct StreamsFolder : test::ProgramFolder {
   // With these redirections of a shell besides.
   Outcome redirected(const std::string& arguments, const std::string& how) const {
     return run(arguments, "sh -c '\"$0\" \"$@\" " + how + "'");
   }
 };
 
-const std::string kShort = "run ball3d --worlds 4 --steps 2 --threads 1";
-
-void check_one_line(const Outcome& outcome, const std::string& message) {
-  INFO(outcome.err);
-  CHECK(outcome.code == 2);
-  CHECK(contains(outcome.err, message));
-  CHECK(outcome.err.rfind("manyworlds: ", 0) == 0);
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-}
-
-bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
+const std::string kShortRun = "run ball3d --worlds 4 --steps 2 --threads 1";
 
 }  // namespace
 
 TEST_CASE("what is printed and does not arrive is an error", "[cli][streams]") {
-  const Folder folder;
+  const StreamsFolder folder;
   const std::vector<std::string> commands = {
       "--help",
       "--version",
@@ -54,8 +45,8 @@ TEST_CASE("what is printed and does not arrive is an error", "[cli][streams]") {
       "info",
       "info --json",
       "plan ball3d",
-      kShort,
-      kShort + " --json",
+      kShortRun,
+      kShortRun + " --json",
       "soak ball3d --worlds 4 --steps 2",
       "bench --scenes ball3d --worlds 4 --steps 2 --warm-up 0 --repeats 1 --threads 1 --json",
       "verify --quick --scenes ball3d",
@@ -72,12 +63,12 @@ TEST_CASE("what is printed and does not arrive is an error", "[cli][streams]") {
 
 TEST_CASE("what is printed goes into no file that was opened in a closed stream's place",
           "[cli][streams]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const StreamsFolder folder;
+  if (!test::program_records()) return;
   for (const char* closed : {">&-", "2>&-", "<&-", "<&- >&- 2>&-"}) {
     INFO(closed);
     const bool unheard = contains(closed, " >&-") || closed[0] == '>';
-    const Outcome run = folder.redirected(kShort + " --record run.h5", closed);
+    const Outcome run = folder.redirected(kShortRun + " --record run.h5", closed);
     CHECK(run.code == (unheard ? 2 : 0));
     const Outcome replay = folder.run("replay run.h5");
     CHECK(replay.code == 0);
@@ -86,7 +77,7 @@ TEST_CASE("what is printed goes into no file that was opened in a closed stream'
 }
 
 TEST_CASE("errors that nobody hears end with their exit code", "[cli][streams]") {
-  const Folder folder;
+  const StreamsFolder folder;
   for (const char* closed : {"2>&-", "2>/dev/full"}) {
     INFO(closed);
     CHECK(folder.redirected("frobnicate", closed).code == 2);
@@ -98,7 +89,7 @@ TEST_CASE("errors that nobody hears end with their exit code", "[cli][streams]")
 }
 
 TEST_CASE("a reader that has seen enough ends the program quietly", "[cli][streams]") {
-  const Folder folder;
+  const StreamsFolder folder;
   // By the signal, as other programs; where that is ignored, by an error. true reads nothing, and
   // the program waits until it has ended.
   const std::string wait = "; while [ ! -s code ]; do sleep 0.05; done";
@@ -118,8 +109,8 @@ TEST_CASE("a reader that has seen enough ends the program quietly", "[cli][strea
 }
 
 TEST_CASE("the environment changes neither numbers nor what is read", "[cli][streams]") {
-  const Folder folder;
-  const std::string job = kShort + " --dt 0.0125 --seed 7 --json";
+  const StreamsFolder folder;
+  const std::string job = kShortRun + " --dt 0.0125 --seed 7 --json";
   const Json plain = Json::parse(folder.run(job, "env -i").out);
   CHECK(plain["dt"] == 0.0125);
   // German writes 0,0125, Turkish has another capital of i; a locale that is not there is C.
@@ -140,7 +131,7 @@ TEST_CASE("the environment changes neither numbers nor what is read", "[cli][str
 }
 
 TEST_CASE("odd numbers are refused by the option's name, or mean what they say", "[cli][streams]") {
-  const Folder folder;
+  const StreamsFolder folder;
   const char* const kWhole[] = {"--worlds",   "--steps",      "--steps-per-call",
                                 "--substeps", "--iterations", "--threads"};
   const char* const kReal[] = {"--dt", "--seconds"};
@@ -149,7 +140,7 @@ TEST_CASE("odd numbers are refused by the option's name, or mean what they say",
   for (const char* option : kWhole) {
     for (const char* number : kOdd) {
       INFO(option << ' ' << number);
-      const Outcome outcome = folder.run(kShort + " " + option + "=" + number);
+      const Outcome outcome = folder.run(kShortRun + " " + option + "=" + number);
       CHECK(outcome.code == 2);
       check_one_line(outcome, std::string(option));
     }
@@ -173,10 +164,10 @@ TEST_CASE("odd numbers are refused by the option's name, or mean what they say",
     INFO(number);
     check_one_line(folder.run(std::string("run ball3d --seed=") + number), "--seed: must be");
   }
-  if (records(folder)) {
+  if (test::program_records()) {
     for (const char* number : {"1e999", "nan", "inf", "-1", "0x10", "' 1'", "1,5"}) {
       INFO(number);
-      check_one_line(folder.run(kShort + " --record a.h5 --record-flush=" + number),
+      check_one_line(folder.run(kShortRun + " --record a.h5 --record-flush=" + number),
                      "--record-flush: must be a ");
     }
   }

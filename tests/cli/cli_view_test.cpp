@@ -14,6 +14,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/program_checks.hpp"
 
 namespace manyworlds {
 namespace {
@@ -23,33 +24,18 @@ using Json = nlohmann::json;
 
 using test::contains, test::Outcome;
 
-struct Folder : test::ProgramFolder {
+struct ViewFolder : test::ProgramFolder {
   Outcome run(const std::string& arguments, const std::string& viewer = "viewer.html") const {
     return ProgramFolder::run(arguments, "MANYWORLDS_VIEWER=" + viewer);
   }
 };
 
-void check_bad(const Outcome& outcome, const char* message) {
-  CHECK(outcome.code == 2);
-  CHECK(outcome.out.empty());
-  INFO(outcome.err);
-  CHECK(contains(outcome.err, message));
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-}
-
-void write_empty_page(const Folder& folder) {
-  std::ofstream(folder / "viewer.html")
-      << "<meta name=\"manyworlds-page\" content=\"1\"><!-- manyworlds: recordings -->";
-}
-
-bool records(const Folder& folder) { return contains(folder.run("info").out, "recordings   yes"); }
-
 }  // namespace
 
 TEST_CASE("view makes pages of scenes and recordings", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
-  write_empty_page(folder);
+  const ViewFolder folder;
+  if (!test::program_records()) return;
+  test::write_empty_page(folder);
   const Outcome scene =
       folder.run("view ball3d --worlds 3 --seconds 1 --fps 15 --out ball.html --json");
   INFO(scene.err);
@@ -74,31 +60,32 @@ TEST_CASE("view makes pages of scenes and recordings", "[cli]") {
 }
 
 TEST_CASE("view says what is wrong", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
-  check_bad(folder.run("view ball3d", "absent.html"),
-            "MANYWORLDS_VIEWER is 'absent.html', which is not a file");
-  write_empty_page(folder);
-  check_bad(folder.run("view absent.h5 --out a.html"), "'absent.h5': cannot be read");
-  check_bad(folder.run("view ball4d --out a.html"), "unknown scene 'ball4d'");
-  check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out no/such/a.html"), "no/such");
-  check_bad(folder.run("view ball3d --worlds 0"), "--worlds");
-  check_bad(folder.run("view"), "what is required");
+  const ViewFolder folder;
+  if (!test::program_records()) return;
+  test::check_refused(folder.run("view ball3d", "absent.html"),
+                      "MANYWORLDS_VIEWER is 'absent.html', which is not a file");
+  test::write_empty_page(folder);
+  test::check_refused(folder.run("view absent.h5 --out a.html"), "'absent.h5': cannot be read");
+  test::check_refused(folder.run("view ball4d --out a.html"), "unknown scene 'ball4d'");
+  test::check_refused(folder.run("view ball3d --seconds 0.1 --worlds 2 --out no/such/a.html"),
+                      "no/such");
+  test::check_refused(folder.run("view ball3d --worlds 0"), "--worlds");
+  test::check_refused(folder.run("view"), "what is required");
   for (const char* size : {"3x", "1280x720x", "63x64", "64x9000", "axb"}) {
-    check_bad(folder.run(std::string("view ball3d --png a.png --size ") + size),
-              "--size: must be like 1280x720, each 64 to 8192, is '");
+    test::check_refused(folder.run(std::string("view ball3d --png a.png --size ") + size),
+                        "--size: must be like 1280x720, each 64 to 8192, is '");
   }
   CHECK_FALSE(fs::exists(folder / "a.html"));
   std::ofstream(folder / "viewer.html") << "<html>";
-  check_bad(folder.run("view ball3d --seconds 0.1 --worlds 2 --out a.html"),
-            "is not a page of this version");
+  test::check_refused(folder.run("view ball3d --seconds 0.1 --worlds 2 --out a.html"),
+                      "is not a page of this version");
 }
 
 TEST_CASE("contacts are recorded where they are asked for, and of scenes that view records",
           "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
-  write_empty_page(folder);
+  const ViewFolder folder;
+  if (!test::program_records()) return;
+  test::write_empty_page(folder);
   const auto has_contacts = [&](const std::string& arguments) {
     const Outcome made = folder.run("view " + arguments + " --out page.html");
     INFO(made.err);
@@ -113,24 +100,27 @@ TEST_CASE("contacts are recorded where they are asked for, and of scenes that vi
   CHECK(folder.run("replay a.h5").code == 0);
   REQUIRE(folder.run("run stack10 --worlds 2 --steps 4 --record b.h5").code == 0);
   CHECK_FALSE(has_contacts("b.h5"));
-  check_bad(folder.run("run stack10 --record-contacts 5"), "--record-contacts requires --record");
-  check_bad(folder.run("run stack10 --record c.h5 --record-contacts 70000"),
-            "--record-contacts: must be at most 65536, is 70000");
-  check_bad(folder.run("view stack10 --contacts -1"), "--contacts: must be at least 0, is -1");
+  test::check_refused(folder.run("run stack10 --record-contacts 5"),
+                      "--record-contacts requires --record");
+  test::check_refused(folder.run("run stack10 --record c.h5 --record-contacts 70000"),
+                      "--record-contacts: must be at most 65536, is 70000");
+  test::check_refused(folder.run("view stack10 --contacts -1"),
+                      "--contacts: must be at least 0, is -1");
 }
 
 TEST_CASE("view without --out leaves its page in the temporary folder, or nothing", "[cli]") {
-  const Folder folder;
-  if (!records(folder)) return;
+  const ViewFolder folder;
+  if (!test::program_records()) return;
   fs::create_directory(folder / "tmp");
   const auto view = [&](const std::string& arguments) {
     return folder.run(arguments, "viewer.html TMPDIR=tmp env -u DISPLAY -u WAYLAND_DISPLAY");
   };
   std::ofstream(folder / "viewer.html") << "<html>";
-  check_bad(view("view ball3d --seconds 0.1 --worlds 2"), "is not a page of this version");
+  test::check_refused(view("view ball3d --seconds 0.1 --worlds 2"),
+                      "is not a page of this version");
   CHECK(fs::is_empty(folder / "tmp"));
-  write_empty_page(folder);
-  check_bad(view("view absent.h5"), "'absent.h5': cannot be read");
+  test::write_empty_page(folder);
+  test::check_refused(view("view absent.h5"), "'absent.h5': cannot be read");
   CHECK(fs::is_empty(folder / "tmp"));
   const Outcome made = view("view ball3d --seconds 0.1 --worlds 2 --json");
   REQUIRE(made.code == 0);
@@ -141,28 +131,29 @@ TEST_CASE("view without --out leaves its page in the temporary folder, or nothin
 }
 
 TEST_CASE("view --live says what it cannot show", "[cli]") {
-  const Folder folder;
-  write_empty_page(folder);
+  const ViewFolder folder;
+  test::write_empty_page(folder);
   const Outcome bare = folder.run("view ball3d --live");
   if (contains(bare.err, "was built without")) {
     CHECK(bare.code == 2);
     CHECK(contains(bare.err, "libboost-dev"));
     return;
   }
-  check_bad(bare, "the page is not of this version");  // it may open no socket
-  check_bad(folder.run("view run.h5 --live"), "'run.h5' is a recording");
-  check_bad(folder.run("view ball3d ball2d --live"), "expects one scene, 2 were given");
-  check_bad(folder.run("view ball3d --live --speed fast"),
-            "--speed: must be 0.001 to 10000, or max");
-  check_bad(folder.run("view ball3d --live --speed 0"), "is '0'");
-  check_bad(folder.run("view nothing --live"), "nothing");
+  test::check_refused(bare, "the page is not of this version");  // it may open no socket
+  test::check_refused(folder.run("view run.h5 --live"), "'run.h5' is a recording");
+  test::check_refused(folder.run("view ball3d ball2d --live"), "expects one scene, 2 were given");
+  test::check_refused(folder.run("view ball3d --live --speed fast"),
+                      "--speed: must be 0.001 to 10000, or max");
+  test::check_refused(folder.run("view ball3d --live --speed 0"), "is '0'");
+  test::check_refused(folder.run("view nothing --live"), "nothing");
   for (const char* other : {"--out a.html", "--png a.png", "--seconds 3", "--fps 5"}) {
     CHECK(folder.run(std::string("view ball3d --live ") + other).code == 2);
   }
   for (const char* alone : {"--speed 2", "--port 8080", "--paused"}) {
     CHECK(folder.run(std::string("view ball3d ") + alone).code == 2);
   }
-  check_bad(folder.run("view ball3d --live", "none.html"), "MANYWORLDS_VIEWER is 'none.html'");
+  test::check_refused(folder.run("view ball3d --live", "none.html"),
+                      "MANYWORLDS_VIEWER is 'none.html'");
 }
 
 }  // namespace manyworlds

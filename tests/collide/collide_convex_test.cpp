@@ -34,12 +34,6 @@ void check(ShapeMaker first, Motion first_motion, ShapeMaker second, const PairP
   }
 }
 
-PairPromise points(int n) {
-  PairPromise p;
-  p.max_points = n;
-  return p;
-}
-
 // Faces win over what is better by half a slop and, in overlap, 5 % of the depth
 // (collide_convex.cpp); a face of A over one of B by half a slop more.
 PairPromise faces(int n, double twin) {

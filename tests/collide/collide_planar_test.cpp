@@ -11,8 +11,8 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr int kScenes = 24;          // random sizes, offsets and vertex counts
-constexpr int kPosesPerScene = 512;  // one round of worlds: 12,288 poses in all
+constexpr int kPlanarScenes = 24;          // random sizes, offsets and vertex counts
+constexpr int kPosesPerPlanarScene = 512;  // one round of worlds: 12,288 poses in all
 
 Geometry any_circle(Random& r) { return Circle{r.uniform(0.1, 0.6)}; }
 Geometry any_polygon(Random& r) { return random_polygon(r, r.integer(3, 8)); }
@@ -67,14 +67,15 @@ Geometry plump_rounded(Random& r) {
   return polygon;
 }
 
-void check(ShapeMaker first, Motion first_motion, ShapeMaker second, int max_points) {
+void check_planar(ShapeMaker first, Motion first_motion, ShapeMaker second, int max_points) {
   PairPromise promise;
   promise.max_points = max_points;
   // Edges of one polygon win near ties with those of the other (polygon_pairs.hpp).
   if (max_points >= 2) promise.bias = 0.5 * test::kPairSlop;
   for (const Table& table : widest_tables()) {
-    const PairResult sum = check_random_pairs({first, first_motion, second}, Space::planar, table,
-                                              promise, kScenes, kPosesPerScene, Random(20240602));
+    const PairResult sum =
+        check_random_pairs({first, first_motion, second}, Space::planar, table, promise,
+                           kPlanarScenes, kPosesPerPlanarScene, Random(20240602));
     INFO(name(table) << ": " << sum.deviations << " deviations in " << sum.poses << " poses\n"
                      << sum.report);
     CHECK(sum.deviations == 0);
@@ -87,140 +88,140 @@ void check(ShapeMaker first, Motion first_motion, ShapeMaker second, int max_poi
 }  // namespace
 
 TEST_CASE("circle-circle agrees with its twin", "[slow][collide]") {
-  check(any_circle, Motion::dynamic, any_circle, 1);
+  check_planar(any_circle, Motion::dynamic, any_circle, 1);
 }
 TEST_CASE("circle against a fixed circle agrees with its twin", "[slow][collide]") {
-  check(any_circle, Motion::fixed, any_circle, 1);
+  check_planar(any_circle, Motion::fixed, any_circle, 1);
 }
 TEST_CASE("circle-halfplane agrees with its twin", "[slow][collide]") {
-  check(any_line, Motion::fixed, any_circle, 1);
+  check_planar(any_line, Motion::fixed, any_circle, 1);
 }
 TEST_CASE("circle-polygon agrees with its twin", "[slow][collide]") {
-  check(any_polygon, Motion::dynamic, any_circle, 1);
+  check_planar(any_polygon, Motion::dynamic, any_circle, 1);
 }
 TEST_CASE("circle-rectangle agrees with its twin", "[slow][collide]") {
-  check(any_circle, Motion::dynamic, any_rectangle, 1);
+  check_planar(any_circle, Motion::dynamic, any_rectangle, 1);
 }
 TEST_CASE("circle against a fixed polygon agrees with its twin", "[slow][collide]") {
-  check(any_polygon, Motion::fixed, any_circle, 1);
+  check_planar(any_polygon, Motion::fixed, any_circle, 1);
 }
 TEST_CASE("polygon against a fixed circle agrees with its twin", "[slow][collide]") {
-  check(any_circle, Motion::fixed, any_polygon, 1);
+  check_planar(any_circle, Motion::fixed, any_polygon, 1);
 }
 TEST_CASE("polygon-halfplane agrees with its twin", "[slow][collide]") {
-  check(any_line, Motion::fixed, any_polygon, 2);
+  check_planar(any_line, Motion::fixed, any_polygon, 2);
 }
 TEST_CASE("polygon-polygon agrees with its twin", "[slow][collide]") {
-  check(any_polygon, Motion::dynamic, any_polygon, 2);
+  check_planar(any_polygon, Motion::dynamic, any_polygon, 2);
 }
 TEST_CASE("polygon-rectangle agrees with its twin", "[slow][collide]") {
-  check(any_rectangle, Motion::dynamic, any_polygon, 2);
+  check_planar(any_rectangle, Motion::dynamic, any_polygon, 2);
 }
 TEST_CASE("rectangle-rectangle agrees with its twin", "[slow][collide]") {
-  check(any_rectangle, Motion::dynamic, any_rectangle, 2);
+  check_planar(any_rectangle, Motion::dynamic, any_rectangle, 2);
 }
 TEST_CASE("polygon against a fixed polygon agrees with its twin", "[slow][collide]") {
-  check(any_polygon, Motion::fixed, any_polygon, 2);
+  check_planar(any_polygon, Motion::fixed, any_polygon, 2);
 }
 
 TEST_CASE("capsule-circle agrees with its planar twin", "[slow][collide]") {
-  check(any_capsule, Motion::dynamic, any_circle, 1);
+  check_planar(any_capsule, Motion::dynamic, any_circle, 1);
 }
 TEST_CASE("circle against a fixed capsule agrees with its planar twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_circle, 1);
+  check_planar(any_capsule, Motion::fixed, any_circle, 1);
 }
 TEST_CASE("capsule against a fixed circle agrees with its planar twin", "[slow][collide]") {
-  check(any_circle, Motion::fixed, any_capsule, 1);
+  check_planar(any_circle, Motion::fixed, any_capsule, 1);
 }
 TEST_CASE("capsule-halfplane agrees with its twin", "[slow][collide]") {
-  check(any_line, Motion::fixed, any_capsule, 2);
+  check_planar(any_line, Motion::fixed, any_capsule, 2);
 }
 TEST_CASE("capsule-capsule agrees with its planar twin", "[slow][collide]") {
-  check(any_capsule, Motion::dynamic, any_capsule, 2);
+  check_planar(any_capsule, Motion::dynamic, any_capsule, 2);
 }
 TEST_CASE("capsule against a fixed capsule agrees with its planar twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_capsule, 2);
+  check_planar(any_capsule, Motion::fixed, any_capsule, 2);
 }
 TEST_CASE("rectangle-capsule agrees with its twin", "[slow][collide]") {
-  check(any_rectangle, Motion::dynamic, any_capsule, 2);
+  check_planar(any_rectangle, Motion::dynamic, any_capsule, 2);
 }
 TEST_CASE("polygon-capsule agrees with its twin", "[slow][collide]") {
-  check(any_polygon, Motion::dynamic, any_capsule, 2);
+  check_planar(any_polygon, Motion::dynamic, any_capsule, 2);
 }
 TEST_CASE("capsule against a fixed polygon agrees with its twin", "[slow][collide]") {
-  check(any_polygon, Motion::fixed, any_capsule, 2);
+  check_planar(any_polygon, Motion::fixed, any_capsule, 2);
 }
 TEST_CASE("rectangle against a fixed capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_rectangle, 2);
+  check_planar(any_capsule, Motion::fixed, any_rectangle, 2);
 }
 TEST_CASE("polygon against a fixed capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_polygon, 2);
+  check_planar(any_capsule, Motion::fixed, any_polygon, 2);
 }
 
 TEST_CASE("circle-segment agrees with its twin", "[slow][collide]") {
-  check(any_segment, Motion::fixed, any_circle, 1);
+  check_planar(any_segment, Motion::fixed, any_circle, 1);
 }
 TEST_CASE("rectangle-segment agrees with its twin", "[slow][collide]") {
-  check(any_segment, Motion::fixed, any_rectangle, 2);
+  check_planar(any_segment, Motion::fixed, any_rectangle, 2);
 }
 TEST_CASE("polygon-segment agrees with its twin", "[slow][collide]") {
-  check(any_segment, Motion::fixed, any_polygon, 2);
+  check_planar(any_segment, Motion::fixed, any_polygon, 2);
 }
 TEST_CASE("capsule-segment agrees with its twin", "[slow][collide]") {
-  check(any_segment, Motion::fixed, any_capsule, 2);
+  check_planar(any_segment, Motion::fixed, any_capsule, 2);
 }
 
 TEST_CASE("rounded polygon-circle agrees with its twin", "[slow][collide]") {
-  check(any_rounded, Motion::dynamic, any_circle, 1);
+  check_planar(any_rounded, Motion::dynamic, any_circle, 1);
 }
 TEST_CASE("rounded polygon against a fixed circle agrees with its twin", "[slow][collide]") {
-  check(any_circle, Motion::fixed, any_rounded, 1);
+  check_planar(any_circle, Motion::fixed, any_rounded, 1);
 }
 TEST_CASE("rounded polygon-halfplane agrees with its twin", "[slow][collide]") {
-  check(any_line, Motion::fixed, any_rounded, 2);
+  check_planar(any_line, Motion::fixed, any_rounded, 2);
 }
 TEST_CASE("rounded polygons agree with their twin", "[slow][collide]") {
-  check(any_rounded, Motion::dynamic, any_rounded, 2);
+  check_planar(any_rounded, Motion::dynamic, any_rounded, 2);
 }
 TEST_CASE("rounded polygon against a fixed one agrees with its twin", "[slow][collide]") {
-  check(any_rounded, Motion::fixed, any_rounded, 2);
+  check_planar(any_rounded, Motion::fixed, any_rounded, 2);
 }
 TEST_CASE("rounded polygon-sharp polygon agrees with its twin", "[slow][collide]") {
-  check(any_rounded, Motion::dynamic, any_polygon, 2);
+  check_planar(any_rounded, Motion::dynamic, any_polygon, 2);
 }
 TEST_CASE("rounded polygon-capsule agrees with its twin", "[slow][collide]") {
-  check(any_rounded, Motion::dynamic, any_capsule, 2);
+  check_planar(any_rounded, Motion::dynamic, any_capsule, 2);
 }
 TEST_CASE("rounded polygon against a fixed capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_rounded, 2);
+  check_planar(any_capsule, Motion::fixed, any_rounded, 2);
 }
 TEST_CASE("rounded polygon-segment agrees with its twin", "[slow][collide]") {
-  check(any_segment, Motion::fixed, any_rounded, 2);
+  check_planar(any_segment, Motion::fixed, any_rounded, 2);
 }
 
 // A terrain gives points for every link that a shape is near.
 constexpr int kAnyNumber = 100;
 
 TEST_CASE("a straight terrain is a half-plane to circles", "[slow][collide]") {
-  check(any_flat_terrain, Motion::fixed, plump_circle, kAnyNumber);
+  check_planar(any_flat_terrain, Motion::fixed, plump_circle, kAnyNumber);
 }
 TEST_CASE("a straight terrain is a half-plane to rectangles", "[slow][collide]") {
-  check(any_flat_terrain, Motion::fixed, plump_rectangle, kAnyNumber);
+  check_planar(any_flat_terrain, Motion::fixed, plump_rectangle, kAnyNumber);
 }
 TEST_CASE("a straight terrain is a half-plane to polygons", "[slow][collide]") {
-  check(any_flat_terrain, Motion::fixed, plump_polygon, kAnyNumber);
+  check_planar(any_flat_terrain, Motion::fixed, plump_polygon, kAnyNumber);
 }
 TEST_CASE("a straight terrain is a half-plane to capsules", "[slow][collide]") {
-  check(any_flat_terrain, Motion::fixed, plump_capsule, kAnyNumber);
+  check_planar(any_flat_terrain, Motion::fixed, plump_capsule, kAnyNumber);
 }
 TEST_CASE("a straight terrain is a half-plane to rounded polygons", "[slow][collide]") {
-  check(any_flat_terrain, Motion::fixed, plump_rounded, kAnyNumber);
+  check_planar(any_flat_terrain, Motion::fixed, plump_rounded, kAnyNumber);
 }
 TEST_CASE("a convex loop of terrain is a polygon to circles", "[slow][collide]") {
-  check(any_hill, Motion::fixed, plump_circle, kAnyNumber);
+  check_planar(any_hill, Motion::fixed, plump_circle, kAnyNumber);
 }
 TEST_CASE("a convex loop of terrain is a polygon to capsules", "[slow][collide]") {
-  check(any_hill, Motion::fixed, plump_capsule, kAnyNumber);
+  check_planar(any_hill, Motion::fixed, plump_capsule, kAnyNumber);
 }
 
 }  // namespace manyworlds::test

@@ -8,13 +8,15 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr int kScenes = 8;            // random sizes and offsets
-constexpr int kPosesPerScene = 1536;  // three rounds of worlds: 12,288 poses in all
+constexpr int kSpatialScenes = 8;            // random sizes and offsets
+constexpr int kPosesPerSpatialScene = 1536;  // three rounds of worlds: 12,288 poses in all
 
-void check(ShapeMaker first, Motion first_motion, ShapeMaker second, const PairPromise& promise) {
+void check_solids(ShapeMaker first, Motion first_motion, ShapeMaker second,
+                  const PairPromise& promise) {
   for (const Table& table : widest_tables()) {
-    const PairResult sum = check_random_pairs({first, first_motion, second}, Space::spatial, table,
-                                              promise, kScenes, kPosesPerScene, Random(20240601));
+    const PairResult sum =
+        check_random_pairs({first, first_motion, second}, Space::spatial, table, promise,
+                           kSpatialScenes, kPosesPerSpatialScene, Random(20240601));
     INFO(name(table) << ": " << sum.deviations << " deviations in " << sum.poses << " poses\n"
                      << sum.report);
     CHECK(sum.deviations == 0);
@@ -35,11 +37,6 @@ PairPromise box_box_promise() {
   p.max_points = 4;
   return p;
 }
-PairPromise points(int n) {
-  PairPromise p;
-  p.max_points = n;
-  return p;
-}
 
 // A box prefers a face to an edge that is shallower by half a slop (box_capsule.hpp).
 PairPromise box_capsule_promise() {
@@ -51,59 +48,59 @@ PairPromise box_capsule_promise() {
 }  // namespace
 
 TEST_CASE("sphere-sphere agrees with its twin", "[slow][collide]") {
-  check(any_sphere, Motion::dynamic, any_sphere, points(1));
+  check_solids(any_sphere, Motion::dynamic, any_sphere, points(1));
 }
 TEST_CASE("sphere against a fixed sphere agrees with its twin", "[slow][collide]") {
-  check(any_sphere, Motion::fixed, any_sphere, points(1));
+  check_solids(any_sphere, Motion::fixed, any_sphere, points(1));
 }
 TEST_CASE("sphere-plane agrees with its twin", "[slow][collide]") {
-  check(any_plane, Motion::fixed, any_sphere, points(1));
+  check_solids(any_plane, Motion::fixed, any_sphere, points(1));
 }
 TEST_CASE("sphere-box agrees with its twin", "[slow][collide]") {
-  check(any_sphere, Motion::dynamic, any_box, points(1));
+  check_solids(any_sphere, Motion::dynamic, any_box, points(1));
 }
 TEST_CASE("sphere against a fixed box agrees with its twin", "[slow][collide]") {
-  check(any_box, Motion::fixed, any_sphere, points(1));
+  check_solids(any_box, Motion::fixed, any_sphere, points(1));
 }
 TEST_CASE("box against a fixed sphere agrees with its twin", "[slow][collide]") {
-  check(any_sphere, Motion::fixed, any_box, points(1));
+  check_solids(any_sphere, Motion::fixed, any_box, points(1));
 }
 TEST_CASE("box-plane agrees with its twin", "[slow][collide]") {
-  check(any_plane, Motion::fixed, any_box, points(4));
+  check_solids(any_plane, Motion::fixed, any_box, points(4));
 }
 TEST_CASE("box-box agrees with its twin", "[slow][collide]") {
-  check(any_box, Motion::dynamic, any_box, box_box_promise());
+  check_solids(any_box, Motion::dynamic, any_box, box_box_promise());
 }
 TEST_CASE("box against a fixed box agrees with its twin", "[slow][collide]") {
-  check(any_box, Motion::fixed, any_box, box_box_promise());
+  check_solids(any_box, Motion::fixed, any_box, box_box_promise());
 }
 
 TEST_CASE("capsule-sphere agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::dynamic, any_sphere, points(1));
+  check_solids(any_capsule, Motion::dynamic, any_sphere, points(1));
 }
 TEST_CASE("sphere against a fixed capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_sphere, points(1));
+  check_solids(any_capsule, Motion::fixed, any_sphere, points(1));
 }
 TEST_CASE("capsule against a fixed sphere agrees with its twin", "[slow][collide]") {
-  check(any_sphere, Motion::fixed, any_capsule, points(1));
+  check_solids(any_sphere, Motion::fixed, any_capsule, points(1));
 }
 TEST_CASE("capsule-plane agrees with its twin", "[slow][collide]") {
-  check(any_plane, Motion::fixed, any_capsule, points(2));
+  check_solids(any_plane, Motion::fixed, any_capsule, points(2));
 }
 TEST_CASE("capsule-capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::dynamic, any_capsule, points(2));
+  check_solids(any_capsule, Motion::dynamic, any_capsule, points(2));
 }
 TEST_CASE("capsule against a fixed capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_capsule, points(2));
+  check_solids(any_capsule, Motion::fixed, any_capsule, points(2));
 }
 TEST_CASE("box-capsule agrees with its twin", "[slow][collide]") {
-  check(any_box, Motion::dynamic, any_capsule, box_capsule_promise());
+  check_solids(any_box, Motion::dynamic, any_capsule, box_capsule_promise());
 }
 TEST_CASE("capsule against a fixed box agrees with its twin", "[slow][collide]") {
-  check(any_box, Motion::fixed, any_capsule, box_capsule_promise());
+  check_solids(any_box, Motion::fixed, any_capsule, box_capsule_promise());
 }
 TEST_CASE("box against a fixed capsule agrees with its twin", "[slow][collide]") {
-  check(any_capsule, Motion::fixed, any_box, box_capsule_promise());
+  check_solids(any_capsule, Motion::fixed, any_box, box_capsule_promise());
 }
 
 }  // namespace manyworlds::test

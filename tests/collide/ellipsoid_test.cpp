@@ -17,7 +17,7 @@ Geometry any_ellipsoid(Random& r) {
 }
 
 // `twin`: m, by which the twin's own search may be wrong.
-void check(ShapeMaker first, Motion first_motion, ShapeMaker second, double twin) {
+void check_ellipsoid(ShapeMaker first, Motion first_motion, ShapeMaker second, double twin) {
   PairPromise promise;
   promise.twin = twin;
   promise.local_below = twin > 0 ? 0.05 : 0;
@@ -33,34 +33,34 @@ void check(ShapeMaker first, Motion first_motion, ShapeMaker second, double twin
     CHECK(sum.with_contacts >= sum.overlapping - sum.poses / 1000);
   }
 }
-constexpr double kSearched = 4e-6;
+constexpr double kEllipsoidSearched = 4e-6;
 
 }  // namespace
 
 TEST_CASE("ellipsoid-plane agrees with its twin", "[slow][collide]") {
-  check(any_plane, Motion::fixed, any_ellipsoid, 0);
+  check_ellipsoid(any_plane, Motion::fixed, any_ellipsoid, 0);
 }
 TEST_CASE("ellipsoid-sphere agrees with its twin", "[slow][collide]") {
-  check(any_ellipsoid, Motion::dynamic, any_sphere, kSearched);
-  check(any_sphere, Motion::fixed, any_ellipsoid, kSearched);
+  check_ellipsoid(any_ellipsoid, Motion::dynamic, any_sphere, kEllipsoidSearched);
+  check_ellipsoid(any_sphere, Motion::fixed, any_ellipsoid, kEllipsoidSearched);
 }
 TEST_CASE("ellipsoid-capsule agrees with its twin", "[slow][collide]") {
-  check(any_ellipsoid, Motion::dynamic, any_capsule, kSearched);
-  check(any_capsule, Motion::fixed, any_ellipsoid, kSearched);
+  check_ellipsoid(any_ellipsoid, Motion::dynamic, any_capsule, kEllipsoidSearched);
+  check_ellipsoid(any_capsule, Motion::fixed, any_ellipsoid, kEllipsoidSearched);
 }
 TEST_CASE("ellipsoid-box agrees with its twin", "[slow][collide]") {
-  check(any_box, Motion::dynamic, any_ellipsoid, kSearched);
-  check(any_ellipsoid, Motion::fixed, any_box, kSearched);
+  check_ellipsoid(any_box, Motion::dynamic, any_ellipsoid, kEllipsoidSearched);
+  check_ellipsoid(any_ellipsoid, Motion::fixed, any_box, kEllipsoidSearched);
 }
 TEST_CASE("ellipsoid-cylinder agrees with its twin", "[slow][collide]") {
-  check(any_cylinder, Motion::dynamic, any_ellipsoid, kSearched);
+  check_ellipsoid(any_cylinder, Motion::dynamic, any_ellipsoid, kEllipsoidSearched);
 }
 TEST_CASE("ellipsoid-hull agrees with its twin", "[slow][collide]") {
-  check(any_hull, Motion::dynamic, any_ellipsoid, kSearched);
+  check_ellipsoid(any_hull, Motion::dynamic, any_ellipsoid, kEllipsoidSearched);
 }
 TEST_CASE("ellipsoid-ellipsoid agrees with its twin", "[slow][collide]") {
-  check(any_ellipsoid, Motion::dynamic, any_ellipsoid, kSearched);
-  check(any_ellipsoid, Motion::fixed, any_ellipsoid, kSearched);
+  check_ellipsoid(any_ellipsoid, Motion::dynamic, any_ellipsoid, kEllipsoidSearched);
+  check_ellipsoid(any_ellipsoid, Motion::fixed, any_ellipsoid, kEllipsoidSearched);
 }
 
 TEST_CASE("the mass of an ellipsoid is 4/3 pi abc rho, its inertia m (b^2 + c^2) / 5",

@@ -15,7 +15,7 @@ TEST_CASE("rays hit the triangles of a height field", "[fast][field][query]") {
   Random random(3);
   const HeightField field = field_of(9, 8, {0.7, 0.5}, hills);
   const Shape shape = shape_of(field);
-  Pose pose;
+  manyworlds::Pose pose;
   pose.position = {0.4, 0.1, -0.2};
   pose.rotation = Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()));
   int hits = 0;

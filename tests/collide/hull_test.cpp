@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <limits>
 
 #include "manyworlds/hull.hpp"
 #include "manyworlds/plan.hpp"
@@ -14,8 +13,6 @@
 
 namespace manyworlds::test {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Vec3> corners_of_box(const Vec3& half) {
   std::vector<Vec3> out;
@@ -33,7 +30,7 @@ std::string message_of(const std::vector<Vec3>& points) {
   return "";
 }
 
-MassProperties of(Geometry geometry) {
+MassProperties mass_of_solid(Geometry geometry) {
   Scene scene;
   return mass_properties(scene, body_of({shape(std::move(geometry))}));
 }
@@ -124,13 +121,13 @@ TEST_CASE("bad cylinders and hulls are named with their value", "[fast][scene]")
 
 TEST_CASE("hulls and cylinders weigh what their solids do", "[fast][scene]") {
   const Vec3 half(0.3, 0.5, 0.7);
-  check_equal(of(Hull{corners_of_box(half)}), of(Box{half}));
-  const MassProperties corner = of(Hull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  check_equal(mass_of_solid(Hull{corners_of_box(half)}), mass_of_solid(Box{half}));
+  const MassProperties corner = mass_of_solid(Hull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
   CHECK(corner.mass == Approx(1000.0 / 6));
   CHECK((corner.center - Vec3::Constant(0.25)).norm() < 1e-15);
   CHECK(corner.inertia(0, 0) == Approx(corner.mass * 3.0 / 40));
   CHECK(corner.inertia(0, 1) == Approx(corner.mass / 80));
-  const MassProperties rod = of(Cylinder{0.2, 1.5});
+  const MassProperties rod = mass_of_solid(Cylinder{0.2, 1.5});
   CHECK(rod.mass == Approx(1000 * 3.14159265358979 * 0.04 * 3));
   CHECK(rod.inertia(2, 2) == Approx(rod.mass * 0.02));
   CHECK(rod.inertia(0, 0) == Approx(rod.mass * (0.01 + 0.75)));

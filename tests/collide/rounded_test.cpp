@@ -15,7 +15,7 @@
 namespace manyworlds::test {
 namespace {
 
-MassProperties of(const Polygon& polygon) {
+MassProperties mass_of_rounded(const Polygon& polygon) {
   Scene scene;
   scene.space = Space::planar;
   return mass_properties(scene, body_of({shape(polygon)}));
@@ -30,7 +30,7 @@ TEST_CASE("a rounded polygon weighs what its solid does", "[fast][scene]") {
   scene.space = Space::planar;
   Capsule capsule{0.2, 0.5};
   check_equal(
-      of(bar),
+      mass_of_rounded(bar),
       mass_properties(scene,
                       body_of({shape(capsule, Vec3::Zero(), rotation_of(kPi / 2, Vec3::UnitZ()))})),
       1, 1e-5);
@@ -49,7 +49,7 @@ TEST_CASE("a rounded polygon weighs what its solid does", "[fast][scene]") {
       area += kCell * kCell, first += kCell * kCell * x, second += kCell * kCell * x.squaredNorm();
     }
   }
-  const MassProperties m = of(any);
+  const MassProperties m = mass_of_rounded(any);
   CHECK(m.mass == Approx(1000 * area).epsilon(1e-4));
   CHECK(m.center.x() == Approx(first.x() / area).epsilon(1e-4));
   CHECK(m.center.y() == Approx(first.y() / area).epsilon(1e-4));

@@ -25,20 +25,20 @@ namespace {
 // Numbers on which rounding and denormals show.
 constexpr double kThird = 1.0 / 3, kTiny = 3e-310;
 
-void add(Bytes& out, const MassProperties& m) {
+void add(StateBytes& out, const MassProperties& m) {
   out.add(m.mass);
   out.add(m.center);
   out.add(m.inertia);
 }
-void add(Bytes& out, const Frame& f) {
+void add(StateBytes& out, const Frame& f) {
   out.add(f.position);
   out.add(f.rotation.coeffs());
 }
-void add(Bytes& out, const std::vector<Issue>& issues) {
+void add(StateBytes& out, const std::vector<Issue>& issues) {
   out.add(issues.size());
   for (const Issue& issue : issues) out.add(to_string(issue));
 }
-void add(Bytes& out, const Scene& scene) {
+void add(StateBytes& out, const Scene& scene) {
   for (const Body& b : scene.bodies) {
     out.add(b.position);
     out.add(b.rotation.coeffs());
@@ -48,8 +48,8 @@ void add(Bytes& out, const Scene& scene) {
   for (const Joint& j : scene.joints) add(out, j.frame_a), add(out, j.frame_b);
   out.add(scene.options.dt);
 }
-Bytes bytes_of(const Batch& batch) {
-  Bytes out;
+StateBytes bytes_of(const Batch& batch) {
+  StateBytes out;
   const Snapshot saved = batch.save();
   for (const std::byte b : saved.bytes()) out.add(b);
   for (const Field field :
@@ -96,17 +96,17 @@ ModeEntry on_batch(const char* name, std::function<void(Batch&)> call) {
           }};
 }
 // What a call on a batch gives.
-ModeEntry from_batch(const char* name, std::function<void(const Batch&, Bytes&)> call) {
+ModeEntry from_batch(const char* name, std::function<void(const Batch&, StateBytes&)> call) {
   return {name, [call = std::move(call)](const InMode& in_mode) {
             const Batch batch = moved_batch();
-            Bytes out;
+            StateBytes out;
             in_mode([&] { call(batch, out); });
             return out;
           }};
 }
-ModeEntry plain(const char* name, std::function<void(Bytes&, const InMode&)> call) {
+ModeEntry plain(const char* name, std::function<void(StateBytes&, const InMode&)> call) {
   return {name, [call = std::move(call)](const InMode& in_mode) {
-            Bytes out;
+            StateBytes out;
             call(out, in_mode);
             return out;
           }};
@@ -115,7 +115,7 @@ ModeEntry plain(const char* name, std::function<void(Bytes&, const InMode&)> cal
 std::vector<ModeEntry> scene_entries() {
   return {
       plain("validate",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               Scene scene = sensitive_scene();
               scene.options.dt = -kThird;
               scene.bodies[3].shapes[0].density = kTiny;
@@ -124,7 +124,7 @@ std::vector<ModeEntry> scene_entries() {
               add(out, issues);
             }),
       plain("compile, fingerprint, report",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               const Scene scene = sensitive_scene();
               in_mode([&] {
                 const Plan plan = compile(scene);
@@ -133,7 +133,7 @@ std::vector<ModeEntry> scene_entries() {
               });
             }),
       plain("mass_properties",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               const Scene scene = sensitive_scene();
               for (const Body& body : scene.bodies) {
                 if (body.motion != Motion::dynamic) continue;
@@ -143,7 +143,7 @@ std::vector<ModeEntry> scene_entries() {
               }
             }),
       plain("frame_in_world, joint_at",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               const Scene scene = contraption(Space::spatial);
               const Frame frame{{0.1, kThird, 0.7}, Quat(1, 0.1, 0.2, 0.3)};
               Frame found;
@@ -157,7 +157,7 @@ std::vector<ModeEntry> scene_entries() {
               add(out, joint.frame_b);
             }),
       plain("make_hull",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               std::vector<Vec3> points = wedge_hull(kThird).vertices;
               points.push_back(Vec3(0.01, 0.02, 0.03));
               Hull hull;
@@ -165,7 +165,7 @@ std::vector<ModeEntry> scene_entries() {
               for (const Vec3& v : hull.vertices) out.add(v);
             }),
       plain("meshes",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               TriangleMesh mesh = box_mesh(Vec3(kThird, 0.7, 1.1));
               MassProperties m;
               in_mode([&] {
@@ -180,7 +180,7 @@ std::vector<ModeEntry> scene_entries() {
               add(out, issues);
             }),
       plain("scenes and tasks with a name",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               std::vector<Scene> made;
               in_mode([&] {
                 for (const auto& entry : scenes::all()) made.push_back(entry.make());
@@ -200,7 +200,7 @@ std::vector<ModeEntry> query_entries() {
   };
   return {
       plain("distance, overlap",
-            [shapes](Bytes& out, const InMode& in_mode) {
+            [shapes](StateBytes& out, const InMode& in_mode) {
               const auto pair = shapes();
               const auto &a = pair.first, &b = pair.second;
               Separation s;
@@ -215,7 +215,7 @@ std::vector<ModeEntry> query_entries() {
               out.add(over);
             }),
       plain("manifold",
-            [shapes](Bytes& out, const InMode& in_mode) {
+            [shapes](StateBytes& out, const InMode& in_mode) {
               const auto pair = shapes();
               const auto &a = pair.first, &b = pair.second;
               std::vector<ManifoldPoint> points;
@@ -223,7 +223,7 @@ std::vector<ModeEntry> query_entries() {
               for (const ManifoldPoint& p : points) out.add(p.point), out.add(p.separation);
             }),
       plain("ray_cast",
-            [shapes](Bytes& out, const InMode& in_mode) {
+            [shapes](StateBytes& out, const InMode& in_mode) {
               const Shape b = shapes().second;
               const Ray ray{{0.8, 0.4, 5}, {0.01, 0.02, -1}, 10, {}, ~0u};
               std::optional<RayHit> hit;
@@ -293,7 +293,7 @@ std::vector<ModeEntry> batch_entries() {
       {"step_to, time",
        [](const InMode& in_mode) {
          Batch batch = moved_batch();
-         Bytes out;
+         StateBytes out;
          in_mode([&] {
            out.add(batch.step_to(0.2501, 100));
            out.add(batch.time());
@@ -334,7 +334,7 @@ std::vector<ModeEntry> batch_entries() {
            batch.read(Parameter::density, read);
            batch.write(Parameter::density, read);
          });
-         Bytes out = bytes_of(batch);
+         StateBytes out = bytes_of(batch);
          out.add(read);
          return out;
        }},
@@ -348,12 +348,12 @@ std::vector<ModeEntry> batch_entries() {
            batch.read_controls(std::span<float>(read));
          });
          batch.step();
-         Bytes out = bytes_of(batch);
+         StateBytes out = bytes_of(batch);
          out.add(read);
          return out;
        }},
       from_batch("read",
-                 [](const Batch& b, Bytes& out) {
+                 [](const Batch& b, StateBytes& out) {
                    for (const Field f : {Field::position, Field::orientation}) {
                      std::vector<float> narrow(b.size(f));
                      std::vector<double> wide(b.size(f));
@@ -364,7 +364,7 @@ std::vector<ModeEntry> batch_entries() {
                    }
                  }),
       from_batch("hash, status, energy",
-                 [](const Batch& b, Bytes& out) {
+                 [](const Batch& b, StateBytes& out) {
                    out.add(b.hash());
                    out.add(b.status(1));
                    const Energy e = b.energy(1);
@@ -373,7 +373,7 @@ std::vector<ModeEntry> batch_entries() {
                    out.add(b.awake_fraction());
                  }),
       from_batch("contacts",
-                 [](const Batch& b, Bytes& out) {
+                 [](const Batch& b, StateBytes& out) {
                    for (const Contact& c : b.contacts(1)) out.add(c.point), out.add(c.separation);
                    const ContactSummary s = b.measure_contacts();
                    out.add(s.points_per_world);
@@ -382,7 +382,7 @@ std::vector<ModeEntry> batch_entries() {
                    out.add(s.mean_occupancy);
                  }),
       from_batch("observers",
-                 [](const Batch& b, Bytes& out) {
+                 [](const Batch& b, StateBytes& out) {
                    for (const Observed what : {Observed::kinetic_energy, Observed::momentum,
                                                Observed::penetration, Observed::ray_distance}) {
                      std::vector<float> narrow(b.size(what));
@@ -398,7 +398,7 @@ std::vector<ModeEntry> batch_entries() {
 std::vector<ModeEntry> task_entries() {
   return {
       plain("validate of a task",
-            [](Bytes& out, const InMode& in_mode) {
+            [](StateBytes& out, const InMode& in_mode) {
               Task task = tasks::find("Pendulum")->make();
               task.actions[0].low = kThird + 1;
               task.actions[0].high = kThird;
@@ -413,7 +413,7 @@ std::vector<ModeEntry> task_entries() {
          const std::vector<std::uint8_t> some = {0, 1, 1};
          std::vector<float> seen(3 * task.observations.size());
          std::vector<double> rewards(3);
-         Bytes out;
+         StateBytes out;
          std::optional<Environment> environment;
          in_mode([&] {
            // Made within: what a user writes in his own mode are exact numbers.
@@ -432,7 +432,7 @@ std::vector<ModeEntry> task_entries() {
            environment->begin(some, seen);
            out.add(seen);
          });
-         Bytes after = bytes_of(environment->batch());
+         StateBytes after = bytes_of(environment->batch());
          CHECK(!after.empty());
          return out;
        }},

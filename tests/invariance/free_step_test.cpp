@@ -40,8 +40,8 @@ std::vector<Scene> variants(const Scene& scene, double size) {
   return out;
 }
 
-std::vector<std::uint64_t> run(const Plan& plan, BatchOptions options, ContactLayout layout,
-                               double push) {
+std::vector<std::uint64_t> run_freely(const Plan& plan, BatchOptions options, ContactLayout layout,
+                                      double push) {
   options.layout = layout;
   Batch batch(plan, options);
   std::vector<std::uint64_t> out;
@@ -74,8 +74,8 @@ TEST_CASE("a group in flight has the bits of the solver's passes", "[fast][bits]
                              << ", push " << push << " N, " << name(table));
                 BatchOptions options = options_of(table, 37);
                 options.sleep = sleep;
-                const auto passes = run(plan, options, ContactLayout::dense, push);
-                CHECK(run(plan, options, ContactLayout::automatic, push) == passes);
+                const auto passes = run_freely(plan, options, ContactLayout::dense, push);
+                CHECK(run_freely(plan, options, ContactLayout::automatic, push) == passes);
               }
             }
           }

@@ -11,7 +11,7 @@
 namespace manyworlds::test {
 namespace {
 
-std::vector<std::uint64_t> run(const Plan& plan, const BatchOptions& options) {
+std::vector<std::uint64_t> run_rows(const Plan& plan, const BatchOptions& options) {
   Batch batch(plan, options);
   batch.step(60);
   for (int w = 0; w < batch.worlds(); ++w) CHECK_FALSE(frozen(batch.status(w)));
@@ -46,9 +46,9 @@ TEST_CASE("rows miss no contact of rectangles, however small, fast and spinning"
                        << name(table));
           BatchOptions options = options_of(table, 37);
           options.layout = ContactLayout::dense;
-          const auto dense = run(plan, options);
+          const auto dense = run_rows(plan, options);
           options.layout = ContactLayout::rows;
-          CHECK(run(plan, options) == dense);
+          CHECK(run_rows(plan, options) == dense);
         }
       }
     }

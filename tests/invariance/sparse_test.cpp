@@ -76,15 +76,15 @@ Plan plan_of(const Scene& scene, BroadPhase broad_phase) {
 }
 
 // What can be seen of a batch, bit for bit.
-struct Seen {
+struct SeenWorld {
   std::vector<std::uint64_t> hash;
   std::vector<Status> status;
   std::vector<bool> asleep;
   std::vector<double> contacts;
-  bool operator==(const Seen&) const = default;
+  bool operator==(const SeenWorld&) const = default;
 };
-Seen look(const Batch& batch) {
-  Seen seen;
+SeenWorld look(const Batch& batch) {
+  SeenWorld seen;
   for (int w = 0; w < batch.worlds(); ++w) {
     seen.hash.push_back(batch.hash(w));
     seen.status.push_back(batch.status(w));
@@ -112,7 +112,7 @@ void disturb(Batch& batch, int first, int step) {
   }
 }
 
-Seen run(const Plan& plan, const BatchOptions& options, int first, int steps) {
+SeenWorld run_sparse(const Plan& plan, const BatchOptions& options, int first, int steps) {
   Batch batch(plan, options);
   for (int i = 0; i < steps; ++i) {
     if (i > steps / 2) disturb(batch, first, i);
@@ -226,12 +226,12 @@ TEST_CASE("sparse plans give the bits of plans with tables", "[fast][sparse][bit
         for (bool sleep : {false, true}) {
           BatchOptions options = options_of(table, 11);
           options.sleep = sleep;
-          const Seen wanted = run(listed, options, 0, 60);
+          const SeenWorld wanted = run_sparse(listed, options, 0, 60);
           INFO(name(table) << " sleep " << sleep << " bodies " << bodies << " planar "
                            << (space == Space::planar));
           CHECK(wanted.contacts.size() > 100);
           CHECK((!sleep || std::count(wanted.asleep.begin(), wanted.asleep.end(), true) > 0));
-          CHECK(run(sparse, options, 0, 60) == wanted);
+          CHECK(run_sparse(sparse, options, 0, 60) == wanted);
         }
       }
     }
@@ -243,7 +243,7 @@ TEST_CASE("sparse plans give the same bits on every table, layout, lane and thre
   for (Space space : {Space::planar, Space::spatial}) {
     const Plan plan = plan_of(mixture(space, 80), BroadPhase::sparse);
     for (Precision precision : {Precision::f32, Precision::f64}) {
-      std::vector<Seen> seen;
+      std::vector<SeenWorld> seen;
       for (Isa isa : available_isas()) {
         if (!has_table({isa, precision})) continue;
         for (ContactLayout layout : {ContactLayout::dense, ContactLayout::rows}) {
@@ -251,13 +251,13 @@ TEST_CASE("sparse plans give the same bits on every table, layout, lane and thre
           options.sleep = true;
           options.layout = layout;
           options.threads = layout == ContactLayout::dense ? 1 : 2;
-          seen.push_back(run(plan, options, 0, 40));
+          seen.push_back(run_sparse(plan, options, 0, 40));
           INFO(to_string(isa) << ' ' << to_string(precision) << ' ' << to_string(layout));
           CHECK(seen.back() == seen.front());
           for (int n : {1, 5}) {  // other lanes, and lanes without a world
             options.worlds = n;
             options.seed = static_cast<std::uint64_t>(9 - n);
-            const Seen part = run(plan, options, 9 - n, 40);
+            const SeenWorld part = run_sparse(plan, options, 9 - n, 40);
             CHECK(
                 std::equal(part.hash.begin(), part.hash.end(), seen.front().hash.begin() + 9 - n));
           }
@@ -273,8 +273,8 @@ TEST_CASE("what a full list leaves out does not depend on the tables", "[fast][s
     scene.options.contact_capacity = 4;
     for (const Table& table : widest_tables()) {
       const BatchOptions options = options_of(table, 9);
-      const Seen listed = run(plan_of(scene, BroadPhase::all_pairs), options, 0, 30);
-      const Seen sparse = run(plan_of(scene, BroadPhase::sparse), options, 0, 30);
+      const SeenWorld listed = run_sparse(plan_of(scene, BroadPhase::all_pairs), options, 0, 30);
+      const SeenWorld sparse = run_sparse(plan_of(scene, BroadPhase::sparse), options, 0, 30);
       INFO(name(table));
       CHECK(std::count(listed.status.begin(), listed.status.end(), Status::contact_overflow) > 4);
       CHECK(listed == sparse);
@@ -290,10 +290,10 @@ TEST_CASE("casts between moving shapes are the same in sparse plans", "[fast][sp
       scene.bodies[i].linear_velocity = Vec3(i < 35 ? 120 : -120, 0, 0) - 30 * up_of(space);
     for (const Table& table : widest_tables()) {
       const BatchOptions options = options_of(table, 9);
-      const Seen listed = run(plan_of(scene, BroadPhase::all_pairs), options, 0, 20);
-      CHECK(run(plan_of(scene, BroadPhase::sparse), options, 0, 20) == listed);
+      const SeenWorld listed = run_sparse(plan_of(scene, BroadPhase::all_pairs), options, 0, 20);
+      CHECK(run_sparse(plan_of(scene, BroadPhase::sparse), options, 0, 20) == listed);
       scene.options.contact.cast_between_moving = false;
-      CHECK_FALSE(run(plan_of(scene, BroadPhase::sparse), options, 0, 20) == listed);
+      CHECK_FALSE(run_sparse(plan_of(scene, BroadPhase::sparse), options, 0, 20) == listed);
       scene.options.contact.cast_between_moving = true;
     }
   }

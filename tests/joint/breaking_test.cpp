@@ -24,7 +24,7 @@ Scene hanging(Space space, JointType type, double break_force) {
 double height(const Batch& batch, int world = 0, int body = 0) {
   return position(batch, world, body).dot(up_of(batch.plan().scene().space));
 }
-Joint rope(const Scene& scene, int a, int b, const Vec3& upper, const Vec3& lower) {
+Joint rope_between(const Scene& scene, int a, int b, const Vec3& upper, const Vec3& lower) {
   Joint out = joint_at(scene, BodyId(a), BodyId(b), at(upper), DistanceJoint{});
   out.frame_b.position = lower - scene.bodies[static_cast<std::size_t>(b)].position;
   return out;
@@ -174,8 +174,8 @@ TEST_CASE("what hangs still and asleep wakes and falls when its joint is cut", "
     Scene scene = empty_scene(Space::spatial, kGravity);
     scene.add(lump(Space::spatial, 2, {0.2, 0.2, 0.2}, {0, 0, -1}));
     scene.add(lump(Space::spatial, 2, {0.2, 0.2, 0.2}, {0, 0, -2}));
-    scene.add(rope(scene, -1, 0, {0, 0, 0}, {0, 0, -1}));
-    scene.add(rope(scene, 0, 1, {0, 0, -1}, {0, 0, -2}));
+    scene.add(rope_between(scene, -1, 0, {0, 0, 0}, {0, 0, -1}));
+    scene.add(rope_between(scene, 0, 1, {0, 0, -1}, {0, 0, -2}));
     scene.joints[1].break_force = 25;
     BatchOptions options = options_of(table, 3);
     options.sleep = true;

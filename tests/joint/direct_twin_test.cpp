@@ -12,7 +12,7 @@
 namespace manyworlds::test {
 namespace {
 
-JointType random_type(Random& random, Space space) {
+JointType random_twin_type(Random& random, Space space) {
   const Spring spring{random.uniform(0, 500), random.uniform(0.1, 20), 0, 0};
   std::optional<Drive> drive;
   if (random.chance(0.4)) drive = Drive{random.uniform(-1, 1), random.uniform(-1, 1), spring};
@@ -57,7 +57,7 @@ Scene random_tree(Random& random, Space space) {
     if (hangs_on < 0 && !anchored) continue;
     const BodyId other = hangs_on < 0 ? BodyId{} : BodyId(hangs_on);
     const Frame frame{on + place(0.5), turn()};
-    const JointType type = random_type(random, space);
+    const JointType type = random_twin_type(random, space);
     const bool reversed = other && random.chance(0.5);
     scene.add(reversed ? joint_at(scene, body, other, frame, type)
                        : joint_at(scene, other, body, frame, type));

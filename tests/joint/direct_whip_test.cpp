@@ -12,8 +12,8 @@ namespace manyworlds::test {
 namespace {
 
 constexpr int kBeads = 40;
-constexpr double kMoment = 0.02;  // kg m^2, of a bead of 1 kg
-constexpr double kGravity = 10;   // m/s^2
+constexpr double kMoment = 0.02;     // kg m^2, of a bead of 1 kg
+constexpr double kWhipGravity = 10;  // m/s^2
 
 struct Peak {
   double speed = 0, time = 0;  // m/s, s: of the last bead
@@ -53,7 +53,7 @@ class Angles {
     Matrix mass(kBeads, kBeads);
     Vector force(kBeads);
     for (int i = 0; i < kBeads; ++i) {
-      force[i] = -kGravity * weight_[i] * std::cos(q[i]);
+      force[i] = -kWhipGravity * weight_[i] * std::cos(q[i]);
       for (int j = 0; j < kBeads; ++j) {
         mass(i, j) = coupling_(i, j) * std::cos(q[i] - q[j]);
         force[i] -= coupling_(i, j) * std::sin(q[i] - q[j]) * w[j] * w[j];

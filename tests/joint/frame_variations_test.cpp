@@ -9,16 +9,17 @@
 
 #include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
+#include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-constexpr double kGravity = 10;
+constexpr double kFrameGravity = 10;
 
-Scene hanging(Space space, double mass) {
-  Scene scene = empty_scene(space, kGravity);
+Scene hanging_frame(Space space, double mass) {
+  Scene scene = empty_scene(space, kFrameGravity);
   scene.add(lump(space, mass, {0.2, 0.2, 0.2}, -up_of(space)));
   Joint joint = joint_at(scene, {}, BodyId(0), at(Vec3::Zero(), hinge_axes(space)), HingeJoint{});
   joint.break_force = 100;
@@ -41,16 +42,11 @@ void vary_joints(Scene& scene) {
   vary_around(scene, Parameter::initial_rotation, 1e-3);
 }
 
-std::string only_issue(const Scene& scene) {
-  const std::vector<Issue> issues = validate(scene);
-  return issues.size() == 1 ? to_string(issues[0]) : std::to_string(issues.size()) + " issues";
-}
-
 }  // namespace
 
 TEST_CASE("joints of worlds break under loads of their own", "[fast][joint][parameters]") {
   for (const Space space : kSpaces) {
-    Scene scene = hanging(space, 2);
+    Scene scene = hanging_frame(space, 2);
     scene.variations = {vary(Parameter::break_force, 10, 30)};
     for (const Table& table : widest_tables()) {
       Batch batch(compile(scene), options_of(table, 33));
@@ -58,8 +54,8 @@ TEST_CASE("joints of worlds break under loads of their own", "[fast][joint][para
       int held = 0;
       for (int w = 0; w < batch.worlds(); ++w) {
         const double most = numbers(batch, Parameter::break_force, w)[0];
-        if (std::abs(most - 2 * kGravity) < 0.2) continue;
-        CHECK(batch.joint_enabled(w, JointId(0)) == (most > 2 * kGravity));
+        if (std::abs(most - 2 * kFrameGravity) < 0.2) continue;
+        CHECK(batch.joint_enabled(w, JointId(0)) == (most > 2 * kFrameGravity));
         held += batch.joint_enabled(w, JointId(0));
       }
       CHECK(held > 3);
@@ -81,7 +77,7 @@ TEST_CASE("joints of worlds break under loads of their own", "[fast][joint][para
 TEST_CASE("welds of worlds break under torques of their own", "[fast][joint][parameters]") {
   for (const Space space : kSpaces) {
     // 3 kg whose centre is 0.5 m out: 15 N m, and a third more while it settles.
-    Scene scene = empty_scene(space, kGravity);
+    Scene scene = empty_scene(space, kFrameGravity);
     scene.add(uniform_rod(space, 3, 1, {0.5, 0, 0}));
     Joint weld = joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), FixedJoint{});
     weld.break_torque = 30;
@@ -103,7 +99,7 @@ TEST_CASE("a slider of axes of its own lets its body fall along them",
           "[fast][joint][parameters]") {
   for (const Space space : kSpaces) {
     Scene scene = empty_scene(space, 0);
-    scene.options.gravity = Vec3(kGravity, 0, 0);
+    scene.options.gravity = Vec3(kFrameGravity, 0, 0);
     scene.add(lump(space, 2, {0.2, 0.2, 0.2}, Vec3::Zero()));
     scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), SliderJoint{}));
     const Vec3 most = Vec3(0, 0, 1.5);
@@ -121,9 +117,9 @@ TEST_CASE("a slider of axes of its own lets its body fall along them",
       batch.step(60);
       const double time = 60 * scene.options.dt;
       for (int w = 0; w < batch.worlds(); ++w) {
-        const double angle = angle_of(w), speed = kGravity * std::cos(angle) * time;
+        const double angle = angle_of(w), speed = kFrameGravity * std::cos(angle) * time;
         const Vec3 expected = speed * Vec3(std::cos(angle), std::sin(angle), 0);
-        CHECK((velocity(batch, w, 0) - expected).norm() < 1e-3 * kGravity);
+        CHECK((velocity(batch, w, 0) - expected).norm() < 1e-3 * kFrameGravity);
       }
     }
   }
@@ -147,7 +143,7 @@ TEST_CASE("anchors of worlds are where bodies are drawn to", "[fast][joint][para
       // A rope without a length is as long as the bodies begin apart, in every world.
       Scene rope = scene;
       rope.joints[0].type = DistanceJoint{};
-      rope.options.gravity = -kGravity * up_of(space);
+      rope.options.gravity = -kFrameGravity * up_of(space);
       rope.variations[0].low = reach / 2;
       Batch ropes(compile(rope), options_of(table, 17));
       ropes.step(120);
@@ -181,7 +177,7 @@ TEST_CASE("frames and loads of worlds have the same bits whatever the batch and 
 }
 
 TEST_CASE("what is wrong with frames and loads that vary is said", "[fast][scene][parameters]") {
-  Scene scene = hanging(Space::planar, 2);
+  Scene scene = hanging_frame(Space::planar, 2);
   const auto issue = [&](std::vector<Variation> variations) {
     scene.variations = std::move(variations);
     return only_issue(scene);

@@ -13,29 +13,29 @@
 
 namespace manyworlds::test {
 
-using namespace manyworlds::invariants;
-
 TEST_CASE("pairs on one joint in space keep momentum and energy for a minute", "[joint]") {
   constexpr int kPairs = 60, kSteps = 3600;
   for (const Table& table : widest_tables()) {
     for (const double spin : {0.01, 0.03}) {  // rad a step
       for (int pair = 0; pair < kPairs; ++pair) {
-        Random kind(static_cast<std::uint64_t>(1000 + pair)),
+        tools::Random kind(static_cast<std::uint64_t>(1000 + pair)),
             state(static_cast<std::uint64_t>(77 + pair));
-        const Scale scale{1, 9.81, 1.0 / 60};
-        JointSystem system;
+        const invariants::Scale scale{1, 9.81, 1.0 / 60};
+        invariants::JointSystem system;
         system.space = Space::spatial, system.bodies = 2, system.mass_ratio = 10;
-        Scene scene = draw_joints(kind, scale, system);
-        set_moving(state, scene, spin / scale.dt);
-        SideWorlds worlds(scene, table.precision);
+        Scene scene = invariants::draw_joints(kind, scale, system);
+        invariants::set_moving(state, scene, spin / scale.dt);
+        invariants::SideWorlds worlds(scene, table.precision);
         worlds.put(0, scene);
-        const std::vector<MassProperties> masses = masses_of(scene);
-        const auto look = [&] { return momenta_of(masses, {worlds.now(0, 0), worlds.now(0, 1)}); };
-        const Momenta start = look();
+        const std::vector<MassProperties> masses = invariants::masses_of(scene);
+        const auto look = [&] {
+          return invariants::momenta_of(masses, {worlds.now(0, 0), worlds.now(0, 1)});
+        };
+        const invariants::Momenta start = look();
         double linear = 0, angular = 0, energy = 0;
         for (int i = 0; i < kSteps; i += 60) {
           worlds.step(60);
-          const Momenta now = look();
+          const invariants::Momenta now = look();
           linear = std::max(linear, (now.linear - start.linear).norm() / start.linear_sum);
           angular = std::max(angular, (now.angular - start.angular).norm() / start.angular_sum);
           energy = std::max(energy, std::abs(now.kinetic / start.kinetic - 1));

@@ -8,6 +8,7 @@
 
 #include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
+#include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
 
@@ -31,11 +32,6 @@ std::vector<Variation> of_all_joints(bool springs) {
   out.push_back(vary(Parameter::drive_stiffness, 100, 1000));
   out.push_back(vary(Parameter::drive_damping, 1, 30));
   return out;
-}
-
-std::string only_issue(const Scene& scene) {
-  const std::vector<Issue> issues = validate(scene);
-  return issues.size() == 1 ? to_string(issues[0]) : std::to_string(issues.size()) + " issues";
 }
 
 }  // namespace

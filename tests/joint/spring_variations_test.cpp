@@ -10,17 +10,18 @@
 #include "tests/support/approx.hpp"
 #include "tests/support/contraption.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
 
 namespace manyworlds::test {
 namespace {
 
-constexpr double kGravity = 10, kMass = 2;
+constexpr double kSpringGravity = 10, kMass = 2;
 
 // A ball 1 m under the origin, which a joint holds to it.
-Scene hanging(Space space, const JointType& type) {
-  Scene scene = empty_scene(space, kGravity);
+Scene hanging_spring(Space space, const JointType& type) {
+  Scene scene = empty_scene(space, kSpringGravity);
   const BodyId ball = add_ball(scene, -up_of(space), kMass);
   Joint joint = joint_at(scene, {}, ball, at(Vec3::Zero()), type);
   joint.frame_b.position.setZero();
@@ -30,7 +31,7 @@ Scene hanging(Space space, const JointType& type) {
 // A ball that slides along x, along which gravity pulls.
 Scene sliding(const SliderJoint& type) {
   Scene scene = empty_scene(Space::spatial, 0);
-  scene.options.gravity = {kGravity, 0, 0};
+  scene.options.gravity = {kSpringGravity, 0, 0};
   scene.add(joint_at(scene, {}, add_ball(scene, Vec3::Zero(), kMass), at(Vec3::Zero()), type));
   return scene;
 }
@@ -82,16 +83,11 @@ Scene thrusters(Space space) {
   return scene;
 }
 
-std::string only_issue(const Scene& scene) {
-  const std::vector<Issue> issues = validate(scene);
-  return issues.size() == 1 ? to_string(issues[0]) : std::to_string(issues.size()) + " issues";
-}
-
 }  // namespace
 
 TEST_CASE("ropes of worlds are as long as their numbers say", "[fast][joint][parameters]") {
   for (const Space space : kSpaces) {
-    Scene scene = hanging(space, DistanceJoint{1.0, {}, {}});
+    Scene scene = hanging_spring(space, DistanceJoint{1.0, {}, {}});
     scene.variations = {vary(Parameter::length, 0.9, 1.1)};
     for (const Table& table : widest_tables()) {
       Batch batch(compile(scene), options_of(table, 17));
@@ -108,13 +104,14 @@ TEST_CASE("springs of worlds give way by their own stiffness or frequency",
           "[fast][joint][parameters]") {
   for (const Table& table : widest_tables()) {
     for (const Space space : kSpaces) {
-      Scene scene = hanging(space, DistanceJoint{1.0, {}, Spring{200, 30, 0, 0}});
+      Scene scene = hanging_spring(space, DistanceJoint{1.0, {}, Spring{200, 30, 0, 0}});
       scene.variations = {vary(Parameter::spring_stiffness, 100, 400),
                           vary(Parameter::spring_damping, 20, 40)};
       Batch batch(compile(scene), options_of(table, 17));
       batch.step(1200);
       for (int w = 0; w < batch.worlds(); ++w) {
-        const double sag = kMass * kGravity / numbers(batch, Parameter::spring_stiffness, w)[0];
+        const double sag =
+            kMass * kSpringGravity / numbers(batch, Parameter::spring_stiffness, w)[0];
         CHECK(position(batch, w, 0).norm() - 1 == Approx(sag).epsilon(2e-3));
       }
     }
@@ -127,7 +124,8 @@ TEST_CASE("springs of worlds give way by their own stiffness or frequency",
     for (int w = 0; w < driven.worlds(); ++w) {
       const double rate = 2 * kPi * numbers(driven, Parameter::drive_frequency, w)[0],
                    target = numbers(driven, Parameter::motor_position, w)[0];
-      CHECK(position(driven, w, 0).x() - target == Approx(kGravity / (rate * rate)).epsilon(2e-3));
+      CHECK(position(driven, w, 0).x() - target ==
+            Approx(kSpringGravity / (rate * rate)).epsilon(2e-3));
     }
     Scene limit = sliding({Limit{-1, 0.2, Spring{500, 40, 0, 0}}, std::nullopt});
     limit.variations = {vary(Parameter::limit_stiffness, 200, 900)};
@@ -136,7 +134,7 @@ TEST_CASE("springs of worlds give way by their own stiffness or frequency",
     for (int w = 0; w < limited.worlds(); ++w) {
       const double stiffness = numbers(limited, Parameter::limit_stiffness, w)[0];
       CHECK(position(limited, w, 0).x() - 0.2 ==
-            Approx(kMass * kGravity / stiffness).epsilon(2e-3));
+            Approx(kMass * kSpringGravity / stiffness).epsilon(2e-3));
     }
   }
 }
@@ -144,7 +142,7 @@ TEST_CASE("springs of worlds give way by their own stiffness or frequency",
 TEST_CASE("pulleys of worlds have ratios and ropes of their own", "[fast][joint][parameters]") {
   for (const Space space : kSpaces) {
     const Vec3 up = up_of(space);
-    Scene scene = empty_scene(space, kGravity);
+    Scene scene = empty_scene(space, kSpringGravity);
     Joint rope;
     rope.body_a = add_ball(scene, Vec3(-1, 0, 0), 1),
     rope.body_b = add_ball(scene, Vec3(1, 0, 0), 1);
@@ -199,7 +197,7 @@ TEST_CASE(
     }
     check_worlds_are_those_of_scenes(thrusters(space), "thrusters", 9, 30);
     // A force to the integrator, with dampers in some worlds.
-    Scene free = hanging(space, DistanceJoint{1.0, {}, Spring{200, 0, 0, 0}});
+    Scene free = hanging_spring(space, DistanceJoint{1.0, {}, Spring{200, 0, 0, 0}});
     free.options.integrator = Integrator::runge_kutta4;
     free.variations = {vary(Parameter::spring_stiffness, 100, 400),
                        vary(Parameter::spring_damping, 0, 5), vary(Parameter::length, 0.8, 1.2)};
@@ -230,7 +228,7 @@ TEST_CASE("every number of every scene is read, whatever its joints have", "[fas
 }
 
 TEST_CASE("what is wrong with springs and lengths that vary is said", "[fast][scene][parameters]") {
-  Scene scene = hanging(Space::planar, DistanceJoint{1.0, {}, Spring{200, 30, 0, 0}});
+  Scene scene = hanging_spring(Space::planar, DistanceJoint{1.0, {}, Spring{200, 30, 0, 0}});
   const auto issue = [&](std::vector<Variation> variations) {
     scene.variations = std::move(variations);
     return only_issue(scene);

@@ -23,7 +23,7 @@ struct Place {
   Quat rotation;
 };
 
-struct Reference : test::Reference {
+struct EqualityReference : test::Reference {
   using test::Reference::Reference;
   void place(int free_body, const Place& at) {
     mjtNum* q = data->qpos + 7 * free_body;
@@ -148,7 +148,7 @@ TEST_CASE("where a joint's frames coincide MuJoCo's equality is satisfied", "[mj
       const Vec3 anchor = a.position + a.rotation * joint.frame_a.position;
       return Place{anchor - rotation * joint.frame_b.position, rotation};
     };
-    Reference reference(xml);
+    EqualityReference reference(xml);
     const bool torqueless = c.equality.find("torquescale") != std::string::npos;
     const int rows = c.weld || torqueless ? 6 : 3;
     const auto residual = [&](const Place& at) {
@@ -260,7 +260,7 @@ TEST_CASE("a double pendulum of connects swings as in MuJoCo", "[mjcf]") {
       "<mujoco><option timestep='0.0001' gravity='0 3 -9.81' integrator='RK4'/>" + kBars +
       connects + "</mujoco>";
   const double seconds = 0.5;
-  Reference reference(xml);
+  EqualityReference reference(xml);
   for (int i = 0; i < 5000; ++i) mj_step(reference.model.get(), reference.data.get());
 
   std::vector<double> apart;

@@ -12,6 +12,7 @@
 #include <catch2/catch.hpp>
 
 #include "src/mjcf/mujoco_library.hpp"
+#include "tests/support/mjcf_text.hpp"
 #include "tests/support/paths.hpp"
 
 namespace manyworlds {
@@ -19,15 +20,12 @@ namespace {
 
 const std::string kFree = "<freejoint/><geom size='0.1'/>";
 
-std::string world(const std::string& content, const std::string& before = "") {
-  return "<mujoco>" + before + "<worldbody>" + content + "</worldbody></mujoco>";
-}
 std::string with_after(const std::string& content, const std::string& after) {
   return "<mujoco><worldbody>" + content + "</worldbody>" + after + "</mujoco>";
 }
 std::string free_body(const std::string& geom_attributes) {
-  return world("<body name='b'><freejoint/><geom name='g' size='0.1' " + geom_attributes +
-               "/></body>");
+  return test::world("<body name='b'><freejoint/><geom name='g' size='0.1' " + geom_attributes +
+                     "/></body>");
 }
 
 std::vector<std::string> problems_of(const std::string& xml) {
@@ -72,22 +70,26 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
        "<geom size='.1'/></body></worldbody></mujoco>",
        "joint 0 of body 'b', line 4", "damping"},
       {"damped free joint",
-       world("<body name='b'><joint name='j' type='free' damping='1'/><geom size='.1'/></body>"),
+       test::world(
+           "<body name='b'><joint name='j' type='free' damping='1'/><geom size='.1'/></body>"),
        "joint 'j' of body 'b'", "damping"},
       {"free joint with armature",
-       world("<body name='b'><joint name='j' type='free' armature='1'/><geom size='.1'/></body>"),
+       test::world(
+           "<body name='b'><joint name='j' type='free' armature='1'/><geom size='.1'/></body>"),
        "joint 'j' of body 'b'", "armature"},
       {"free joint with frictionloss",
-       world("<body name='b'><joint name='j' type='free' frictionloss='1'/>"
-             "<geom size='.1'/></body>"),
+       test::world("<body name='b'><joint name='j' type='free' frictionloss='1'/>"
+                   "<geom size='.1'/></body>"),
        "joint 'j' of body 'b'", "frictionloss"},
       {"sprung free joint",
-       world("<body name='b'><joint name='j' type='free' stiffness='1'/><geom size='.1'/></body>"),
+       test::world(
+           "<body name='b'><joint name='j' type='free' stiffness='1'/><geom size='.1'/></body>"),
        "joint 'j' of body 'b'", "stiffness"},
-      {"mocap", world("<body name='b' mocap='true'><geom size='.1'/></body>"), "body 'b'", "mocap"},
+      {"mocap", test::world("<body name='b' mocap='true'><geom size='.1'/></body>"), "body 'b'",
+       "mocap"},
       {"welded gravcomp",
-       world("<body name='b'>" + kFree +
-             "<body name='c' gravcomp='1'><geom size='.1'/></body></body>"),
+       test::world("<body name='b'>" + kFree +
+                   "<body name='c' gravcomp='1'><geom size='.1'/></body></body>"),
        "body 'c'", "gravcomp"},
       {"surface velocity", free_body("surfacevel='1 0 0 0 0 0'"), "geom 'g'", "surfacevel"},
       {"adhesion", free_body("adhesion='1'"), "geom 'g'", "adhesion"},
@@ -106,9 +108,9 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
        with_after("<body><freejoint name='j'/><geom size='.1'/></body>",
                   "<actuator><motor name='m' joint='j'/></actuator>"),
        "actuator 'm'", "not simulated"},
-      {"medium density", world("", "<option density='1.2'/>"), "option", "density"},
-      {"viscosity", world("", "<option viscosity='1'/>"), "option", "viscosity"},
-      {"wind", world("", "<option wind='1 0 0'/>"), "option", "wind"},
+      {"medium density", test::world("", "<option density='1.2'/>"), "option", "density"},
+      {"viscosity", test::world("", "<option viscosity='1'/>"), "option", "viscosity"},
+      {"wind", test::world("", "<option wind='1 0 0'/>"), "option", "wind"},
   };
   for (const Refused& refused : table) {
     INFO(refused.what);
@@ -121,8 +123,8 @@ TEST_CASE("each element that is not simulated is an error that names it", "[mjcf
   }
   // What neither collides nor weighs is no problem.
   const std::string seen = "<geom type='ellipsoid' size='.1 .2 .3' contype='0' conaffinity='0'/>";
-  CHECK(problems_of(world(inertial + seen + "</body>")).empty());
-  CHECK(problems_of(world(seen)).empty());
+  CHECK(problems_of(test::world(inertial + seen + "</body>")).empty());
+  CHECK(problems_of(test::world(seen)).empty());
 }
 
 TEST_CASE("meshes and height fields that cannot be are errors", "[mjcf][fast]") {
@@ -150,8 +152,8 @@ TEST_CASE("meshes and height fields that cannot be are errors", "[mjcf][fast]") 
 
 TEST_CASE("all problems of a file are listed, one per line, with its name", "[mjcf][fast]") {
   const TemporaryFile file("manyworlds_two_problems.xml",
-                           world("<body name='b'><joint name='j' type='free' damping='1'/>"
-                                 "<geom name='g' size='.1' adhesion='1'/></body>"));
+                           test::world("<body name='b'><joint name='j' type='free' damping='1'/>"
+                                       "<geom name='g' size='.1' adhesion='1'/></body>"));
   std::string text;
   try {
     load_mjcf(file.path);
@@ -178,7 +180,7 @@ TEST_CASE("softness and solver settings are warnings, once per attribute", "[mjc
       {free_body("priority='1'"), "priority"},
       {free_body("friction='1 0.1'"), "torsional friction"},
       {free_body("friction='1 0.005 0.1'"), "rolling friction"},
-      {world("<body>" + kFree + "</body>", "<option integrator='RK4' cone='elliptic'/>"),
+      {test::world("<body>" + kFree + "</body>", "<option integrator='RK4' cone='elliptic'/>"),
        "option: integrator, cone"},
       {with_after("<body name='b'>" + kFree + "</body>",
                   "<sensor><framepos name='s' objtype='body' objname='b'/></sensor>"),
@@ -186,7 +188,7 @@ TEST_CASE("softness and solver settings are warnings, once per attribute", "[mjc
       {with_after("<body name='b'>" + kFree + "</body>",
                   "<keyframe><key name='k' qvel='1 0 0 0 0 0'/></keyframe>"),
        "key 'k'"},
-      {world("<geom size='.1' friction='0.5'/><body>" + kFree + "</body>"),
+      {test::world("<geom size='.1' friction='0.5'/><body>" + kFree + "</body>"),
        "geoms have different sliding friction (0.5 to 1)"},
   };
   for (const Warned& warned : table) {
@@ -200,7 +202,7 @@ TEST_CASE("softness and solver settings are warnings, once per attribute", "[mjc
   }
   std::string many;
   for (int i = 0; i < 5; ++i) many += "<geom size='.1' solref='0.01 1'/>";
-  const std::vector<std::string> warnings = load_mjcf_string(world(many)).warnings;
+  const std::vector<std::string> warnings = load_mjcf_string(test::world(many)).warnings;
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].find("and 4 more: solref") != std::string::npos);
 }
@@ -230,7 +232,8 @@ TEST_CASE("unreadable files give MuJoCo's message with the name of the file", "[
   CHECK_THROWS_WITH(load_mjcf("no_such_folder/none.xml"), "no_such_folder/none.xml: no such file");
   CHECK_THROWS_WITH(load_mjcf(test::kSourceFolder),
                     Catch::Contains("is a directory; expected a file"));
-  CHECK_THROWS_AS(load_mjcf_string(world("<body><freejoint/></body>")), MjcfError);  // no mass
+  CHECK_THROWS_AS(load_mjcf_string(test::world("<body><freejoint/></body>")),
+                  MjcfError);  // no mass
   CHECK_THROWS_AS(load_mjcf_string(free_body("mass='-1'")), MjcfError);
   CHECK_NOTHROW(load_mjcf_string(free_body("")));
 }
@@ -241,7 +244,7 @@ TEST_CASE("numbers that MuJoCo lets pass are found by validate", "[mjcf][fast]")
   INFO(option);
   try {
     const MjcfResult result =
-        load_mjcf_string(world("<body>" + kFree + "</body>", "<option " + option + "/>"));
+        load_mjcf_string(test::world("<body>" + kFree + "</body>", "<option " + option + "/>"));
     CHECK_FALSE(validate(result.scene).empty());
   } catch (const MjcfError& error) {
     CHECK(std::string(error.what()).find("MJCF string: ") == 0);
@@ -253,9 +256,9 @@ TEST_CASE("a size without a finite diameter is found by validate", "[mjcf][fast]
   const std::string shape = GENERATE("size='1e308'", "type='box' size='1e200 1 1'");
   INFO(shape);
   const Scene scene =
-      load_mjcf_string(world("<body name='b'><freejoint/><inertial pos='0 0 0' mass='1' "
-                             "diaginertia='1 1 1'/><geom name='g' " +
-                             shape + "/></body>"))
+      load_mjcf_string(test::world("<body name='b'><freejoint/><inertial pos='0 0 0' mass='1' "
+                                   "diaginertia='1 1 1'/><geom name='g' " +
+                                   shape + "/></body>"))
           .scene;
   CHECK(*scene.options.length_unit == 1);
   const std::vector<Issue> issues = validate(scene);

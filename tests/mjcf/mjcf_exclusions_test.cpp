@@ -15,7 +15,7 @@ namespace {
 using Names = std::set<std::pair<std::string, std::string>>;  // of bodies
 
 // Balls that all overlap: two chains with welded parts, a static body with a child, a free ball.
-std::string model(const std::string& option, const std::string& contact) {
+std::string model_with_contacts(const std::string& option, const std::string& contact) {
   const auto body = [](const std::string& name, const std::string& inside) {
     return "<body name='" + name + "' pos='.01 0 0'>" + inside + "<geom size='1'";
   };
@@ -81,7 +81,7 @@ TEST_CASE("the bodies of trees that collide are MuJoCo's", "[mjcf][robots][fast]
       GENERATE("",
                "<exclude body1='t1' body2='a3'/><exclude body1='f' body2='world'/>"
                "<exclude body1='s' body2='world'/><exclude body1='a' body2='a2'/>");
-  const std::string xml = model(option, contact);
+  const std::string xml = model_with_contacts(option, contact);
   const Scene scene = load_mjcf_string(xml).scene;
   const Names names = ours(scene);
   CHECK(names.size() > 20);
@@ -98,7 +98,7 @@ TEST_CASE("the bodies of trees that collide are MuJoCo's", "[mjcf][robots][fast]
 
 TEST_CASE("bodies that never collide need no exclusion", "[mjcf][robots][fast]") {
   const Scene scene =
-      load_mjcf_string(model("<option><flag contact='disable'/></option>", "")).scene;
+      load_mjcf_string(model_with_contacts("<option><flag contact='disable'/></option>", "")).scene;
   CHECK(scene.exclusions.empty());
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace tasks = gymnasium;
 
-std::filesystem::path model(const char* name) {
+std::filesystem::path model_path(const char* name) {
   return std::filesystem::path(kSourceFolder) / "scenes" / "mjcf" / (std::string(name) + ".xml");
 }
 // A model in the temporary folder, removed at the end.
@@ -42,20 +42,21 @@ void check_same(const Task& a, const Task& b) {
 }  // namespace
 
 TEST_CASE("a task of a file is the task of its scene", "[mjcf][task][gymnasium]") {
-  const Scene ant = load_mjcf(model("robot_ant")).scene;
-  check_same(tasks::ant(model("robot_ant")), tasks::ant(ant));
+  const Scene ant = load_mjcf(model_path("robot_ant")).scene;
+  check_same(tasks::ant(model_path("robot_ant")), tasks::ant(ant));
   const tasks::AntOptions other{.frame_skip = 3, .include_cfrc_ext_in_observation = false};
-  check_same(tasks::ant(model("robot_ant"), other), tasks::ant(ant, other));
-  check_same(tasks::task_of_file("Ant-v5", model("robot_ant"),
+  check_same(tasks::ant(model_path("robot_ant"), other), tasks::ant(ant, other));
+  check_same(tasks::task_of_file("Ant-v5", model_path("robot_ant"),
                                  {{"frame_skip", {3}}, {"include_cfrc_ext_in_observation", {0}}}),
              tasks::ant(ant, other));
-  check_same(tasks::hopper(model("robot_hopper")),
-             tasks::hopper(load_mjcf(model("robot_hopper")).scene));
-  check_same(tasks::half_cheetah(model("robot_cheetah")),
-             tasks::task_of_file("HalfCheetah-v5", model("robot_cheetah")));
-  check_same(tasks::humanoid(model("robot_humanoid")),
-             tasks::task_of_file("Humanoid-v5", model("robot_humanoid")));
-  Environment environment(tasks::walker2d(model("robot_cheetah")), {.worlds = 2, .threads = 1});
+  check_same(tasks::hopper(model_path("robot_hopper")),
+             tasks::hopper(load_mjcf(model_path("robot_hopper")).scene));
+  check_same(tasks::half_cheetah(model_path("robot_cheetah")),
+             tasks::task_of_file("HalfCheetah-v5", model_path("robot_cheetah")));
+  check_same(tasks::humanoid(model_path("robot_humanoid")),
+             tasks::task_of_file("Humanoid-v5", model_path("robot_humanoid")));
+  Environment environment(tasks::walker2d(model_path("robot_cheetah")),
+                          {.worlds = 2, .threads = 1});
   CHECK(environment.batch().worlds() == 2);
 }
 
@@ -64,7 +65,7 @@ TEST_CASE("errors of a task of a file name it and what is missing", "[mjcf][task
   using Catch::StartsWith;
   CHECK_THROWS_AS(tasks::ant("/nowhere/ant.xml"), MjcfError);
   CHECK_THROWS_WITH(tasks::ant("/nowhere/ant.xml"), Contains("/nowhere/ant.xml"));
-  const std::string hopper = model("robot_hopper").string();
+  const std::string hopper = model_path("robot_hopper").string();
   CHECK_THROWS_AS(tasks::ant(hopper), std::invalid_argument);
   CHECK_THROWS_WITH(tasks::ant(hopper), StartsWith(hopper + ": the model ") &&
                                             Contains("has 6 coordinates, must have 7 or more"));

@@ -15,6 +15,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/mjcf_text.hpp"
 #include "tests/support/program.hpp"
 
 namespace manyworlds {
@@ -28,11 +29,8 @@ const std::string kBall = "<body><freejoint/><geom size='.1'/></body>";
 const std::string kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-std::string world(const std::string& content, const std::string& before = "") {
-  return "<mujoco>" + before + "<worldbody>" + content + "</worldbody></mujoco>";
-}
 std::string with_assets(const std::string& assets) {
-  return world("", "<asset>" + assets + "</asset>");
+  return test::world("", "<asset>" + assets + "</asset>");
 }
 
 fs::path write(const ScratchFolder& folder, const std::string& name, const std::string& text) {
@@ -74,28 +72,29 @@ TEST_CASE("models that would become too large are refused, with the element and 
        "hfield 'h', line 1: has 30000 x 30000 samples", "samples"},
       {with_assets("<hfield name='h' nrow='1' ncol='99999999999' size='1 1 1 1'/>"), "hfield 'h'",
        "samples"},
-      {world("<replicate count='1000000'>" + kBall + end), "replicate, line 1: makes 3000001",
+      {test::world("<replicate count='1000000'>" + kBall + end), "replicate, line 1: makes 3000001",
        "copies"},
-      {world("\n" + replicate + "<frame>" + replicate + replicate + kBall + end + end + "</frame>" +
-             end),
+      {test::world("\n" + replicate + "<frame>" + replicate + replicate + kBall + end + end +
+                   "</frame>" + end),
        "replicate, line 2", "copies"},
-      {world(replicate + kBall + end + "<replicate count='1e300'>" + kBall + end), "replicate",
-       "copies"},
-      {world(replicate + kBall + kBall + kBall + kBall + kBall + kBall + kBall + end + "<body>" +
-             replicate + kBall + kBall + kBall + kBall + kBall + kBall + kBall + end + "</body>" +
-             replicate + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall +
-             kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall +
-             kBall + kBall + kBall + kBall + end),
+      {test::world(replicate + kBall + end + "<replicate count='1e300'>" + kBall + end),
+       "replicate", "copies"},
+      {test::world(replicate + kBall + kBall + kBall + kBall + kBall + kBall + kBall + end +
+                   "<body>" + replicate + kBall + kBall + kBall + kBall + kBall + kBall + kBall +
+                   end + "</body>" + replicate + kBall + kBall + kBall + kBall + kBall + kBall +
+                   kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall +
+                   kBall + kBall + kBall + kBall + kBall + kBall + kBall + kBall + end),
        "with replicate", "copies"},
-      {world("<flexcomp name='f' type='grid' count='1000 1000 1000'/>"), "flexcomp 'f'", "copies"},
-      {world("<flexcomp name='f' type='grid' count='2 2 2' cellcount='9999 9999 9999'/>"),
+      {test::world("<flexcomp name='f' type='grid' count='1000 1000 1000'/>"), "flexcomp 'f'",
+       "copies"},
+      {test::world("<flexcomp name='f' type='grid' count='2 2 2' cellcount='9999 9999 9999'/>"),
        "flexcomp 'f'", "copies"},
       {with_assets("<mesh name='m' builtin='supersphere' params='20000 1 1'/>"), "mesh 'm'",
        "vertices"},
       {with_assets("<mesh name='m' builtin='cone' params='100000000 1'/>"), "mesh 'm'", "vertices"},
       {with_assets("<mesh name='m' builtin='grid' params='9999 9999 9999 1 1 1'/>"), "mesh 'm'",
        "vertices"},
-      {world(kBall) + "", "", nullptr},
+      {test::world(kBall) + "", "", nullptr},
       {"<mujoco><worldbody>" + kBall +
            "</worldbody><sensor><user name='u' dim='1000000000'/></sensor></mujoco>",
        "sensors", "samples"},
@@ -105,8 +104,8 @@ TEST_CASE("models that would become too large are refused, with the element and 
       {"<mujoco><worldbody><camera name='c' resolution='100000 100000'/></worldbody><sensor>"
        "<rangefinder camera='c'/></sensor></mujoco>",
        "sensors", "samples"},
-      {world("<replicate count='100'><geom size='1' name='" + std::string(5000000, 'n') + "'/>" +
-             end),
+      {test::world("<replicate count='100'><geom size='1' name='" + std::string(5000000, 'n') +
+                   "'/>" + end),
        "bytes", "total_bytes"},
   };
   for (const TooLarge& large : table) {
@@ -137,11 +136,12 @@ TEST_CASE("every limit is where it says, and an option widens it", "[mjcf][fast]
     std::string xml;
   };
   const std::string meshes =
-      world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>");
+      test::world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>");
   const std::vector<Case> cases = {
-      {"copies", 5, world("<replicate count='2'><geom size='1'/><geom size='1'/></replicate>")},
-      {"elements", 5, world(kBall)},
-      {"depth", 4, world(kBall)},
+      {"copies", 5,
+       test::world("<replicate count='2'><geom size='1'/><geom size='1'/></replicate>")},
+      {"elements", 5, test::world(kBall)},
+      {"depth", 4, test::world(kBall)},
       {"samples", 12, with_assets("<hfield name='h' nrow='3' ncol='4' size='1 1 1 1'/>")},
       {"vertices", 4, meshes},
       {"files", 2, meshes},
@@ -156,7 +156,7 @@ TEST_CASE("every limit is where it says, and an option widens it", "[mjcf][fast]
   }
   CHECK_THROWS_WITH(load_mjcf(write(folder, "limits.xml", meshes), limited("total_bytes", 100)),
                     Contains("limit 'total_bytes'"));
-  CHECK_THROWS_AS(load_mjcf_string(world(kBall), limited("file_bytes", 10)), MjcfError);
+  CHECK_THROWS_AS(load_mjcf_string(test::world(kBall), limited("file_bytes", 10)), MjcfError);
   MjcfLimits limits;
   CHECK_THROWS_WITH(mjcf_limit(limits, "copys"), Contains("'copys'") && Contains("copies"));
   CHECK(mjcf_limit_names().size() == 8);
@@ -289,7 +289,7 @@ TEST_CASE("a text has no folder, so it names files only with a root", "[mjcf][fa
   const ScratchFolder folder;
   write(folder, "m.obj", kTetrahedron);
   const std::string xml =
-      world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>");
+      test::world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>");
   CHECK_THROWS_WITH(load_mjcf_string(xml), Contains("MJCF string: mesh, line 1: 'm.obj'") &&
                                                Contains("MJCF string has no folder"));
   MjcfOptions options;
@@ -321,17 +321,17 @@ TEST_CASE("models that hold themselves are refused", "[mjcf][fast]") {
     for (std::size_t at; (at = text.find("N.xml")) != std::string::npos;) text.replace(at, 1, next);
     write(folder, "l" + std::to_string(level) + ".xml", text);
   }
-  write(folder, "l4.xml", world(kBall));
+  write(folder, "l4.xml", test::world(kBall));
   CHECK_THROWS_WITH(load_mjcf(folder / "l0.xml"), Contains("limit 'files'"));
 }
 
 TEST_CASE("what is attached counts as often as it is", "[mjcf][fast]") {
   const ScratchFolder folder;
   write(folder, "part.xml",
-        world("<body name='b'><geom size='1'/><replicate count='50'><geom "
-              "size='1'/></replicate></body>"));
+        test::world("<body name='b'><geom size='1'/><replicate count='50'><geom "
+                    "size='1'/></replicate></body>"));
   const auto model = [](const std::string& content) {
-    return world(content, "<asset><model name='p' file='part.xml'/></asset>");
+    return test::world(content, "<asset><model name='p' file='part.xml'/></asset>");
   };
   const std::string attach = "<attach model='p' body='b' prefix='x'/>";
   const fs::path path = write(folder, "a.xml", model(attach));
@@ -348,7 +348,8 @@ TEST_CASE("what is attached counts as often as it is", "[mjcf][fast]") {
 TEST_CASE("deep nesting ends in an error, not in the stack's", "[mjcf][fast]") {
   std::string deep, ends;
   for (int i = 0; i < 100000; ++i) deep += "<body>", ends += "</body>";
-  CHECK_THROWS_WITH(load_mjcf_string(world(deep + ends)), Contains("XML parse error, line 1"));
+  CHECK_THROWS_WITH(load_mjcf_string(test::world(deep + ends)),
+                    Contains("XML parse error, line 1"));
   // Each document within what the XML library takes, together too deep.
   const ScratchFolder folder;
   deep.clear(), ends.clear();
@@ -356,7 +357,7 @@ TEST_CASE("deep nesting ends in an error, not in the stack's", "[mjcf][fast]") {
   for (int i = 0; i < 4; ++i) {
     const std::string next = i < 3 ? "<include file='d" + std::to_string(i + 1) + ".xml'/>" : "";
     write(folder, "d" + std::to_string(i) + ".xml",
-          i == 0 ? world(deep + next + ends) : "<mujoco>" + deep + next + ends + "</mujoco>");
+          i == 0 ? test::world(deep + next + ends) : "<mujoco>" + deep + next + ends + "</mujoco>");
   }
   CHECK_THROWS_WITH(load_mjcf(folder / "d0.xml"), Contains("limit 'depth'"));
 }
@@ -401,7 +402,7 @@ TEST_CASE("what was read is what is compiled, whatever becomes of the files", "[
   write(folder, "m.obj", kTetrahedron);
   const fs::path model =
       write(folder, "model.xml",
-            world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>"));
+            test::world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>"));
   const MjcfFiles files = MjcfFiles::read(model);
   const auto hull = [](const MjcfResult& result) {
     return std::get<Hull>(result.scene.bodies.at(0).shapes.at(0).geometry).vertices;
@@ -413,7 +414,7 @@ TEST_CASE("what was read is what is compiled, whatever becomes of the files", "[
   CHECK(hull(files.compile()) == before);
   // Read again, the mesh of the same name is another, whatever MuJoCo remembers.
   write(folder, "model.xml",
-        world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>"));
+        test::world("<geom type='mesh' mesh='m'/>", "<asset><mesh file='m.obj'/></asset>"));
   CHECK(hull(load_mjcf(model)) != before);
 }
 

@@ -15,7 +15,7 @@ TEST_CASE("the caller's floating-point mode changes no bit of an MJCF scene", "[
   check_modes({{"load_mjcf_string", [&](const InMode& in_mode) {
                   MjcfResult result;
                   in_mode([&] { result = load_mjcf_string(xml); });
-                  Bytes out;
+                  StateBytes out;
                   for (const Body& body : result.scene.bodies) {
                     out.add(body.position);
                     out.add(body.rotation.coeffs());

@@ -11,7 +11,7 @@
 namespace manyworlds::test {
 namespace {
 
-std::string model(const std::string& option) {
+std::string model_with_option(const std::string& option) {
   return "<mujoco>" + option +
          "<worldbody><geom type='plane' size='1 1 1'/><body name='a' pos='0 0 1' gravcomp='0.5'>"
          "<joint name='h' type='hinge' axis='0 1 0' stiffness='2' damping='3' limited='true' "
@@ -19,7 +19,7 @@ std::string model(const std::string& option) {
          "<joint name='s' type='slide' axis='1 0 0'/><geom size='.1'/></body></body></worldbody>"
          "<actuator><motor name='m' joint='h'/></actuator></mujoco>";
 }
-MjcfResult load(const std::string& option) { return load_mjcf_string(model(option)); }
+MjcfResult load(const std::string& option) { return load_mjcf_string(model_with_option(option)); }
 MjcfResult with_flag(const std::string& flag) {
   return load("<option><flag " + flag + "='disable'/></option>");
 }
@@ -90,7 +90,7 @@ TEST_CASE("without springs and dampers MuJoCo compensates no gravity", "[mjcf][r
                               (compensated ? "" : "damper='disable'") + "/></option>";
     const Scene scene = load(flags).scene;
     CHECK(scene.at(scene.body("a")).gravity_scale == (compensated ? 0.5 : 1));
-    const Reference reference(model(flags));
+    const Reference reference(model_with_option(flags));
     CHECK((reference.data->qfrc_passive[0] != 0) == compensated);
   }
 }

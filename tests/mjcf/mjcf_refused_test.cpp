@@ -32,7 +32,7 @@ std::string flag(const std::string& text) {
                 "<actuator><motor name='m' joint='j'/></actuator>", "damping='1'");
 }
 
-std::vector<std::string> problems_of(const std::string& xml) {
+std::vector<std::string> problems_in(const std::string& xml) {
   try {
     load_mjcf_string(xml);
   } catch (const MjcfError& error) {
@@ -46,10 +46,10 @@ struct Refused {
   const char* problem;
 };
 
-void check(const std::vector<Refused>& table) {
+void check_refused(const std::vector<Refused>& table) {
   for (const Refused& refused : table) {
     INFO(refused.xml);
-    CHECK(problems_of(refused.xml) ==
+    CHECK(problems_in(refused.xml) ==
           std::vector<std::string>{std::string("MJCF string: ") + refused.problem});
   }
 }
@@ -57,7 +57,7 @@ void check(const std::vector<Refused>& table) {
 }  // namespace
 
 TEST_CASE("what a joint has and is not simulated is refused", "[mjcf][robots][fast]") {
-  check({
+  check_refused({
       {jointed("type='ball' stiffness='1 2 0'"),
        "joint 'j' of body 'b', line 1: polynomial stiffness is not simulated "
        "yet; expected one number"},
@@ -80,17 +80,17 @@ TEST_CASE("what a joint has and is not simulated is refused", "[mjcf][robots][fa
        "body 'd', line 1: has joints but no mass, which is not simulated yet; expected a mass"},
   });
   // What acts on nothing is no problem.
-  CHECK(problems_of(
+  CHECK(problems_in(
             around("<option><flag frictionloss='disable'/></option>", "", "frictionloss='0.1'"))
             .empty());
-  CHECK(problems_of(jointed("actuatorfrcrange='-1 1'")).empty());
-  CHECK(problems_of(inside("<body><geom size='.1' mass='0' contype='0' conaffinity='0'/></body>"))
+  CHECK(problems_in(jointed("actuatorfrcrange='-1 1'")).empty());
+  CHECK(problems_in(inside("<body><geom size='.1' mass='0' contype='0' conaffinity='0'/></body>"))
             .empty());
 }
 
 TEST_CASE("an actuator that is more than a force on a hinge or slide is refused",
           "[mjcf][robots][fast]") {
-  check({
+  check_refused({
       {actuated("<motor name='m' joint='r'/>"),
        "actuator 'm', line 1: acts on a free joint, which is not simulated yet; expected a hinge "
        "or a slide joint"},
@@ -137,15 +137,15 @@ TEST_CASE("an actuator that is more than a force on a hinge or slide is refused"
 
 TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast]") {
   const std::string joints = " is not simulated with joints yet; expected ";
-  CHECK(problems_of(option("integrator='implicit'")) ==
+  CHECK(problems_in(option("integrator='implicit'")) ==
         std::vector<std::string>{"MJCF string: option: integrator implicit" + joints +
                                  "Euler, implicitfast or RK4"});
   for (const std::string name : {"override", "sleep", "diagexact"}) {
-    CHECK(problems_of(flag(name + "='enable'")) ==
+    CHECK(problems_in(flag(name + "='enable'")) ==
           std::vector<std::string>{"MJCF string: option: flag " + name + "='enable'" + joints +
                                    "disable"});
   }
-  check({
+  check_refused({
       {option("noslip_iterations='3'"),
        "option: noslip_iterations is not simulated with joints yet; expected 0"},
       {flag("actuation='disable'"),
@@ -159,7 +159,7 @@ TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast
        "option: flag speculative='enable' is not simulated with joints yet; expected disable"},
   });
   // Without friction, damping and actuators they change nothing.
-  CHECK(problems_of(around("<default><geom condim='1'/></default><option cone='elliptic'>"
+  CHECK(problems_in(around("<default><geom condim='1'/></default><option cone='elliptic'>"
                            "<flag eulerdamp='disable' actuation='disable'/></option>"))
             .empty());
 }
@@ -167,13 +167,13 @@ TEST_CASE("options that change how trees move are refused", "[mjcf][robots][fast
 TEST_CASE("contacts and constraints that trees do not have yet are refused",
           "[mjcf][robots][fast]") {
   for (const char* condim : {"4", "6"}) {
-    CHECK(problems_of(around("", "", "", "condim='" + std::string(condim) + "'")) ==
+    CHECK(problems_in(around("", "", "", "condim='" + std::string(condim) + "'")) ==
           std::vector<std::string>{"MJCF string: geom 'g' of body 'b', line 1: condim " +
                                    std::string(condim) +
                                    " is not simulated with joints yet; expected 1 or 3"});
   }
-  CHECK(problems_of(around("", "", "", "condim='6' contype='0' conaffinity='0'")).empty());
-  check({
+  CHECK(problems_in(around("", "", "", "condim='6' contype='0' conaffinity='0'")).empty());
+  check_refused({
       {around("", "<equality><connect name='e' body1='b' body2='c' anchor='0 0 0'/></equality>"),
        "equality 'e', line 1: is a connect, which is not simulated with joints yet; expected none"},
       {around("", "<equality><weld name='e' body1='b'/></equality>"),
@@ -193,7 +193,7 @@ TEST_CASE("contacts and constraints that trees do not have yet are refused",
       {around("", "<contact><pair name='e' geom1='g' geom2='floor'/></contact>"),
        "pair 'e': contact pairs are not simulated yet; expected none"},
   });
-  CHECK(problems_of(around("<option><flag equality='disable'/></option>",
+  CHECK(problems_in(around("<option><flag equality='disable'/></option>",
                            "<equality><joint name='e' joint1='j'/></equality>"))
             .empty());
   const MjcfResult inactive =
@@ -207,7 +207,7 @@ TEST_CASE("contacts and constraints that trees do not have yet are refused",
 }
 
 TEST_CASE("all problems of a model with joints come at once", "[mjcf][robots][fast]") {
-  const std::vector<std::string> problems = problems_of(
+  const std::vector<std::string> problems = problems_in(
       around("<option integrator='implicit' noslip_iterations='1'/>",
              "<actuator><motor site='p'/><muscle joint='j' lengthrange='0 1'/></actuator>",
              "frictionloss='1'", "condim='4'"));

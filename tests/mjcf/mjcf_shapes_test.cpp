@@ -20,7 +20,7 @@ namespace {
 
 using test::Reference;
 
-std::string world(const std::string& content, const std::string& assets = "") {
+std::string world_of(const std::string& content, const std::string& assets = "") {
   return "<mujoco><asset>" + assets + "</asset><worldbody>" + content + "</worldbody></mujoco>";
 }
 
@@ -99,8 +99,9 @@ TEST_CASE("cylinders keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
   for (const std::string geom :
        {"size='.1 .25' pos='.25 0 0' zaxis='1 0 0'", "size='.1' fromto='0 0 0 .5 0 0'"}) {
     const Scene scene =
-        load_mjcf_string(world("<body name='b'><freejoint/><geom type='cylinder' density='500' " +
-                               geom + "/></body>"))
+        load_mjcf_string(
+            world_of("<body name='b'><freejoint/><geom type='cylinder' density='500' " + geom +
+                     "/></body>"))
             .scene;
     const Body& body = scene.bodies.at(0);
     REQUIRE(body.shapes.size() == 1);
@@ -123,8 +124,8 @@ TEST_CASE("cylinders keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
 
 TEST_CASE("ellipsoids keep MuJoCo's radii, axes and mass", "[mjcf][fast]") {
   const Scene scene =
-      load_mjcf_string(world("<body name='b'><freejoint/><geom type='ellipsoid' size='.1 .2 .3' "
-                             "density='500' pos='.1 0 0' euler='30 20 10'/></body>"))
+      load_mjcf_string(world_of("<body name='b'><freejoint/><geom type='ellipsoid' size='.1 .2 .3' "
+                                "density='500' pos='.1 0 0' euler='30 20 10'/></body>"))
           .scene;
   const Body& body = scene.bodies.at(0);
   REQUIRE(body.shapes.size() == 1);
@@ -145,9 +146,9 @@ TEST_CASE("a mesh is the hull of its vertices where the file has them", "[mjcf][
   const Vec3 shift(0.2, 0.1, -0.3);
   const Quat turn(Eigen::AngleAxisd(0.5, Vec3::UnitY()));
   const Scene scene =
-      load_mjcf_string(world("<body name='b' pos='0 0 5'><freejoint/><geom name='g' type='mesh' "
-                             "mesh='m' pos='.2 .1 -.3' euler='0 28.6478897565 0'/></body>",
-                             mesh_of(points)))
+      load_mjcf_string(world_of("<body name='b' pos='0 0 5'><freejoint/><geom name='g' type='mesh' "
+                                "mesh='m' pos='.2 .1 -.3' euler='0 28.6478897565 0'/></body>",
+                                mesh_of(points)))
           .scene;
   const Body& body = scene.bodies.at(0);
   REQUIRE(body.shapes.size() == 1);
@@ -177,7 +178,7 @@ TEST_CASE("a mesh of too many corners is an error that maxhullvert mends", "[mjc
   const std::string geom =
       "<body name='b'><freejoint/><geom name='g' type='mesh' mesh='m'/></body>";
   try {
-    load_mjcf_string(world(geom, mesh_of(ball_points(200))));
+    load_mjcf_string(world_of(geom, mesh_of(ball_points(200))));
     FAIL("expected an error");
   } catch (const MjcfError& error) {
     REQUIRE(error.problems().size() == 1);
@@ -187,7 +188,7 @@ TEST_CASE("a mesh of too many corners is an error that maxhullvert mends", "[mjc
                                  Catch::Contains("maxhullvert"));
   }
   const Scene scene =
-      load_mjcf_string(world(geom, mesh_of(ball_points(200), "maxhullvert='64'"))).scene;
+      load_mjcf_string(world_of(geom, mesh_of(ball_points(200), "maxhullvert='64'"))).scene;
   const std::size_t corners =
       std::get<Hull>(scene.bodies.at(0).shapes.at(0).geometry).vertices.size();
   CHECK(corners <= 64);
@@ -196,17 +197,17 @@ TEST_CASE("a mesh of too many corners is an error that maxhullvert mends", "[mjc
 
 TEST_CASE("meshes that are only seen are left out, but weigh", "[mjcf][fast]") {
   const Scene scene =
-      load_mjcf_string(world("<body><freejoint/><geom size='.1' mass='1'/>"
-                             "<geom type='mesh' mesh='m' contype='0' conaffinity='0' mass='2'/>"
-                             "</body>",
-                             mesh_of(ball_points(200))))
+      load_mjcf_string(world_of("<body><freejoint/><geom size='.1' mass='1'/>"
+                                "<geom type='mesh' mesh='m' contype='0' conaffinity='0' mass='2'/>"
+                                "</body>",
+                                mesh_of(ball_points(200))))
           .scene;
   CHECK(scene.bodies.at(0).shapes.size() == 1);
   CHECK(scene.bodies.at(0).mass_properties->mass == Approx(3));
 }
 
 TEST_CASE("a height field has MuJoCo's surface", "[mjcf][fast]") {
-  const std::string xml = world(
+  const std::string xml = world_of(
       "<body name='land' pos='0.3 -0.2 0.1' euler='0 0 30'><geom name='g' type='hfield' "
       "hfield='h' pos='0 0 0.2'/></body>",
       kHeightField);
@@ -260,10 +261,10 @@ TEST_CASE("shapes from MJCF rest where they should", "[mjcf]") {
   for (const Case& c : table) {
     INFO(c.what);
     const Scene scene =
-        load_mjcf_string(world("<geom type='plane' size='1 1 1'/><body pos='0.1 0.2 0.5'>"
-                               "<freejoint/>" +
-                                   c.body + "</body>",
-                               pyramid))
+        load_mjcf_string(world_of("<geom type='plane' size='1 1 1'/><body pos='0.1 0.2 0.5'>"
+                                  "<freejoint/>" +
+                                      c.body + "</body>",
+                                  pyramid))
             .scene;
     const Vec3 x = last_position(scene, 1000);
     CHECK(std::abs(x.z() - c.height) < 4 * *compile(scene).resolved().contact.slop);
@@ -273,10 +274,10 @@ TEST_CASE("shapes from MJCF rest where they should", "[mjcf]") {
 
 TEST_CASE("a ball dropped on the highest cell of a height field stays there", "[mjcf]") {
   // The last rows of the file are those of low y; the cell is from (0.5, -1.5) to (1, -0.5).
-  const Scene scene = load_mjcf_string(world("<geom type='hfield' hfield='h' pos='0 0 1'/>"
-                                             "<body pos='0.75 -1 2.2'><freejoint/>"
-                                             "<geom size='0.1'/></body>",
-                                             kHeightField))
+  const Scene scene = load_mjcf_string(world_of("<geom type='hfield' hfield='h' pos='0 0 1'/>"
+                                                "<body pos='0.75 -1 2.2'><freejoint/>"
+                                                "<geom size='0.1'/></body>",
+                                                kHeightField))
                           .scene;
   const Vec3 x = last_position(scene, 1000);
   CHECK((x - Vec3(0.75, -1, 1 + 0.8 + 0.1)).norm() < 4 * 0.005 * 0.2);

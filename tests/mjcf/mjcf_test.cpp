@@ -13,6 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include "src/mjcf/mujoco_library.hpp"
+#include "tests/support/mjcf_text.hpp"
 #include "tests/support/paths.hpp"
 
 namespace manyworlds {
@@ -38,10 +39,6 @@ const Body& find_body(const Scene& scene, const std::string& name) {
 
 Quat to_quat(const mjtNum* q) { return {q[0], q[1], q[2], q[3]}; }
 Vec3 to_vec3(const mjtNum* v) { return {v[0], v[1], v[2]}; }
-
-std::string world(const std::string& content) {
-  return "<mujoco><worldbody>" + content + "</worldbody></mujoco>";
-}
 
 }  // namespace
 
@@ -134,8 +131,8 @@ TEST_CASE("welded bodies are static at their composed pose", "[mjcf][fast]") {
 }
 
 TEST_CASE("a plane's normal is the z axis of its geom", "[mjcf][fast]") {
-  const Scene scene = load_mjcf_string(world("<geom type='plane' size='1 1 1' pos='0.3 2 5' "
-                                             "zaxis='-1 0 0'/>"))
+  const Scene scene = load_mjcf_string(test::world("<geom type='plane' size='1 1 1' pos='0.3 2 5' "
+                                                   "zaxis='-1 0 0'/>"))
                           .scene;
   REQUIRE(scene.bodies.size() == 1);
   const Plane& plane = std::get<Plane>(scene.bodies[0].shapes[0].geometry);
@@ -148,8 +145,9 @@ TEST_CASE("capsules keep MuJoCo's size, axis and mass", "[mjcf][fast]") {
   for (const std::string geom :
        {"size='.1 .25' pos='.25 0 0' zaxis='1 0 0'", "size='.1' fromto='0 0 0 .5 0 0'"}) {
     const Scene scene =
-        load_mjcf_string(world("<body name='b'><freejoint/><geom type='capsule' density='500' " +
-                               geom + "/></body>"))
+        load_mjcf_string(
+            test::world("<body name='b'><freejoint/><geom type='capsule' density='500' " + geom +
+                        "/></body>"))
             .scene;
     const Body& body = find_body(scene, "b");
     REQUIRE(body.shapes.size() == 1);
@@ -193,7 +191,8 @@ TEST_CASE("option gives time step and gravity, and flags can switch things off",
 
 TEST_CASE("gravcomp scales gravity", "[mjcf][fast]") {
   const Scene scene =
-      load_mjcf_string(world("<body gravcomp='0.75'><freejoint/><geom size='0.1'/></body>")).scene;
+      load_mjcf_string(test::world("<body gravcomp='0.75'><freejoint/><geom size='0.1'/></body>"))
+          .scene;
   CHECK(scene.bodies.at(0).gravity_scale == 0.25);
 }
 
@@ -207,7 +206,7 @@ TEST_CASE("filters collide exactly the geoms that MuJoCo's bits let collide", "[
     content += "<body><freejoint/><geom size='0.1' contype='" + std::to_string(contype.back()) +
                "' conaffinity='" + std::to_string(conaffinity.back()) + "'/></body>";
   }
-  const Scene scene = load_mjcf_string(world(content)).scene;
+  const Scene scene = load_mjcf_string(test::world(content)).scene;
   REQUIRE(scene.bodies.size() == 24);
   int colliding = 0;
   for (std::size_t i = 0; i < 24; ++i) {

@@ -8,7 +8,8 @@
 namespace manyworlds::test {
 namespace {
 
-std::string model(const std::string& option, const std::string& bodies, const std::string& rest) {
+std::string model_in_space(const std::string& option, const std::string& bodies,
+                           const std::string& rest) {
   return R"(<mujoco><compiler angle="radian" autolimits="true"/><option timestep="0.004" )" +
          option +
          R"(/><default><geom type="capsule" size="0.05 0.12" friction="0.7"/><joint damping="0.1"/></default>
@@ -26,11 +27,12 @@ std::string folding_robot(const std::string& option, int dimensions) {
            name + R"(" axis="1 0.2 0" pos="0 0 -0.15" range="-2.8 2.8" armature="0.002"/><geom/>
         </body></body>)";
   };
-  return model(option,
-               R"(<body pos="0 0 0.6"><freejoint/><geom type="capsule" size="0.07 0.2" condim=")" +
-                   std::to_string(dimensions) + R"("/>)" + arm("left", 0.25) + arm("right", -0.25) +
-                   "</body>",
-               R"(<tendon><fixed limited="true" range="-1 1"><joint joint="left" coef="1"/>
+  return model_in_space(
+      option,
+      R"(<body pos="0 0 0.6"><freejoint/><geom type="capsule" size="0.07 0.2" condim=")" +
+          std::to_string(dimensions) + R"("/>)" + arm("left", 0.25) + arm("right", -0.25) +
+          "</body>",
+      R"(<tendon><fixed limited="true" range="-1 1"><joint joint="left" coef="1"/>
       <joint joint="right" coef="-0.7"/></fixed></tendon>
     <actuator><motor joint="left" gear="3" ctrlrange="-1 1"/>
       <motor joint="right" gear="3" ctrlrange="-1 1"/></actuator>)");
@@ -47,7 +49,7 @@ std::string heap(const std::string& option) {
         <body pos="0 0 0.3"><joint axis="0 1 0" pos="0 0 -0.15" range="-1.2 1.2"/><geom/></body>
       </body>)";
   }
-  return model(option, bodies, "");
+  return model_in_space(option, bodies, "");
 }
 
 std::string stage_of(const std::string& xml) {
@@ -57,7 +59,7 @@ std::string stage_of(const std::string& xml) {
   return "";
 }
 
-void check(const std::string& xml, const std::string& space) {
+void check_space(const std::string& xml, const std::string& space) {
   CHECK_THAT(stage_of(xml), Catch::Contains(space));
   for (const Table& table : all_tables()) {
     const compare::Pair pair = pair_of(xml);
@@ -78,7 +80,7 @@ TEST_CASE("links of a robot that touch each other are solved by articulated bodi
   for (const char* option : {"cone='pyramidal'", "cone='elliptic' impratio='2'"}) {
     for (const int dimensions : {1, 3}) {
       INFO(option << ", condim " << dimensions);
-      check(folding_robot(option, dimensions), "by articulated bodies");
+      check_space(folding_robot(option, dimensions), "by articulated bodies");
     }
   }
 }
@@ -86,7 +88,7 @@ TEST_CASE("links of a robot that touch each other are solved by articulated bodi
 TEST_CASE("robots in a heap are solved in joint space", "[mjcf][robots]") {
   for (const char* option : {"cone='pyramidal'", "cone='elliptic'"}) {
     INFO(option);
-    check(heap(option), "by the joint-space inertia");
+    check_space(heap(option), "by the joint-space inertia");
   }
 }
 

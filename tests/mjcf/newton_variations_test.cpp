@@ -15,7 +15,7 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr const char* kRobot = R"(<mujoco><compiler angle="radian" autolimits="true"/>
+constexpr const char* kVariedRobot = R"(<mujoco><compiler angle="radian" autolimits="true"/>
   <option timestep="0.004" solver="Newton" tolerance="1e-14" iterations="200" ls_iterations="100"
           ls_tolerance="1e-8"/>
   <default><geom type="capsule" size="0.04 0.1" density="900"/>
@@ -99,7 +99,7 @@ void write_into(mjModel& m, const Batch& batch, int world) {
 
 TEST_CASE("robots move as in MuJoCo's model with the same numbers written into it",
           "[mjcf][robots][parameters]") {
-  const std::string xml = named(kRobot);
+  const std::string xml = named(kVariedRobot);
   Scene scene = load_mjcf_string(xml).scene;
   const auto of = [](Variation v, int control) {
     v.control = ControlId(control);

@@ -15,7 +15,7 @@ using Numbers = TreeTwin::Numbers;
 // A walker on a free joint, an arm on the world, and a ball that hangs: each kind of joint, several
 // of them on one body, off its centre; limits, springs, dampers, armature; bodies welded to others
 // are left out, since MuJoCo's compiler would keep them.
-constexpr const char* kRobots = R"(<mujoco>
+constexpr const char* kTreeRobots = R"(<mujoco>
   <compiler angle="radian" autolimits="true"/>
   <option timestep="0.004" solver="Newton" tolerance="1e-14" iterations="200" ls_iterations="100"
           ls_tolerance="1e-8" gravity="0.5 -1 -9.81"><flag contact="disable"/></option>
@@ -98,7 +98,7 @@ std::vector<TwinLink> links_of(const mjModel& m) {
 template <class Real>
 void check_against_mujoco(const kernels::Kernels<Real>& kernels, double tolerance) {
   INFO(kernels.isa);
-  Reference reference(kRobots);
+  Reference reference(kTreeRobots);
   const mjModel& m = *reference.model;
   mjData* d = reference.data.get();
   const Vec3 gravity(m.opt.gravity[0], m.opt.gravity[1], m.opt.gravity[2]);
@@ -158,7 +158,7 @@ TEST_CASE("trees move as in MuJoCo: smooth dynamics and limits", "[mjcf][robots]
 }
 
 TEST_CASE("trees follow MuJoCo's path for 1,000 steps", "[mjcf][robots][fast]") {
-  Reference reference(kRobots);
+  Reference reference(kTreeRobots);
   mjModel& m = *reference.model;
   m.opt.disableflags |= mjDSBL_LIMIT;
   mjData* d = reference.data.get();

@@ -13,12 +13,12 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Integrator kAll[] = {Integrator::symplectic_euler, Integrator::explicit_euler,
-                               Integrator::implicit_euler,   Integrator::verlet,
-                               Integrator::velocity_verlet,  Integrator::runge_kutta4};
+constexpr Integrator kAllIntegrators[] = {Integrator::symplectic_euler, Integrator::explicit_euler,
+                                          Integrator::implicit_euler,   Integrator::verlet,
+                                          Integrator::velocity_verlet,  Integrator::runge_kutta4};
 
 // Euler's symplectic method as textbooks have it is the one that does not split rotations.
-void choose(Scene& scene, Integrator integrator) {
+void choose_integrator(Scene& scene, Integrator integrator) {
   scene.options.integrator = integrator;
   if (integrator == Integrator::symplectic_euler) scene.options.rotation = Rotation::exponential;
 }
@@ -60,9 +60,9 @@ Scene tied_crowd(Space space) {
 TEST_CASE("bodies fall as each integrator's sum says", "[fast][integrator]") {
   for (const Table& table : widest_tables()) {
     for (Space space : {Space::planar, Space::spatial}) {
-      for (Integrator integrator : kAll) {
+      for (Integrator integrator : kAllIntegrators) {
         Scene scene = empty_scene(space, 9.81);
-        choose(scene, integrator);
+        choose_integrator(scene, integrator);
         scene.options.dt = 0.04, scene.options.substeps = 2;
         Body ball = body_of(shape_of(round_of(space, 0.1)), Vec3::Zero());
         ball.linear_velocity = 3 * up_of(space);
@@ -91,9 +91,9 @@ TEST_CASE("each integrator changes the energy of a spring as its recurrence says
   if (!has_table(double_table())) return;
   const double k = 40, h = 0.02, z2 = h * h * k;
   for (Space space : {Space::planar, Space::spatial}) {
-    for (Integrator integrator : kAll) {
+    for (Integrator integrator : kAllIntegrators) {
       Scene scene = oscillator(space, k, h);
-      choose(scene, integrator);
+      choose_integrator(scene, integrator);
       Batch batch(compile(scene), options_of(double_table()));
       // What stays the same but for a factor per step (numerics.md 0.4).
       const auto kept = [&] {
@@ -179,10 +179,10 @@ TEST_CASE("a world that explicit Euler blows up is frozen, and its neighbours ke
 
 TEST_CASE("bits do not depend on anything else whatever the integrator", "[fast][integrator]") {
   for (Space space : {Space::planar, Space::spatial}) {
-    for (Integrator integrator : kAll) {
+    for (Integrator integrator : kAllIntegrators) {
       for (bool contacts : {false, true}) {
         Scene scene = tied_crowd(space);
-        choose(scene, integrator);
+        choose_integrator(scene, integrator);
         for (Body& body : scene.bodies) {
           if (!contacts) body.shapes[0].filter.mask = 0;
         }
@@ -217,7 +217,7 @@ TEST_CASE("bits do not depend on anything else whatever the integrator", "[fast]
 TEST_CASE("bodies fly by the integrator until they meet something", "[fast][integrator]") {
   for (const Table& table : widest_tables()) {
     for (Space space : {Space::planar, Space::spatial}) {
-      for (Integrator integrator : kAll) {
+      for (Integrator integrator : kAllIntegrators) {
         Scene alone = empty_scene(space), met = empty_scene(space);
         Body ball = body_of(shape_of(round_of(space, 0.2)), 4 * up_of(space));
         ball.linear_velocity = {3, 0, 0};
@@ -225,7 +225,7 @@ TEST_CASE("bodies fly by the integrator until they meet something", "[fast][inte
         met.add(ground(space)), met.add(ball), met.add(ball);
         met.bodies[2].position += Vec3(-6, 0, 0);
         for (Scene* scene : {&alone, &met}) {
-          choose(*scene, integrator);
+          choose_integrator(*scene, integrator);
           scene->attractors = {{up_of(space), 2, 1}};
         }
         Batch one(compile(alone), options_of(table)), both(compile(met), options_of(table));
@@ -244,9 +244,9 @@ TEST_CASE("bodies fly by the integrator until they meet something", "[fast][inte
 }
 
 TEST_CASE("a pile stands and sleeps whatever the integrator", "[fast][integrator]") {
-  for (Integrator integrator : kAll) {
+  for (Integrator integrator : kAllIntegrators) {
     Scene scene = empty_scene(Space::spatial);
-    choose(scene, integrator);
+    choose_integrator(scene, integrator);
     scene.add(ground(Space::spatial));
     for (int i = 0; i < 4; ++i) {
       scene.add(body_of(shape_of(Box{Vec3::Constant(0.5)}), {0, 0, 0.5 + i}));
@@ -306,9 +306,9 @@ TEST_CASE("springs as forces can be looked at, let go and copied", "[fast][integ
 TEST_CASE("a force or a NaN in one world is seen in no other", "[fast][integrator]") {
   for (const Table& table : all_tables()) {
     for (Space space : {Space::planar, Space::spatial}) {
-      for (Integrator integrator : kAll) {
+      for (Integrator integrator : kAllIntegrators) {
         Scene scene = tied_crowd(space);
-        choose(scene, integrator);
+        choose_integrator(scene, integrator);
         for (Body& body : scene.bodies) {
           body.shapes[0].filter.mask = 0;
           if (body.motion == Motion::dynamic) body.linear_velocity.x() = -0.0;

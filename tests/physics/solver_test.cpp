@@ -17,8 +17,8 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr Solver kAll[] = {Solver::tgs_soft, Solver::sequential_impulse, Solver::sor, Solver::nncg,
-                           Solver::penalty};
+constexpr Solver kAllSolvers[] = {Solver::tgs_soft, Solver::sequential_impulse, Solver::sor,
+                                  Solver::nncg, Solver::penalty};
 constexpr Solver kHard[] = {Solver::sequential_impulse, Solver::sor, Solver::nncg};
 
 // As each is usually taken: the hard ones with many sweeps and one substep, penalty with short
@@ -129,7 +129,7 @@ TEST_CASE("no solver changes momentum", "[fast][solver]") {
   if (!has_table(double_table())) return;
   constexpr int kWorlds = 8;
   for (Space space : kSpaces) {
-    for (Solver solver : kAll) {
+    for (Solver solver : kAllSolvers) {
       for (bool hinged : {false, true}) {
         Scene scene = crowd(space, 12);
         scene.options.gravity.setZero();
@@ -167,7 +167,7 @@ TEST_CASE("no solver changes momentum", "[fast][solver]") {
 TEST_CASE("every solver holds a stack and settles a pile", "[solver]") {
   for (const Table& table : widest_tables()) {
     for (Space space : kSpaces) {
-      for (Solver solver : kAll) {
+      for (Solver solver : kAllSolvers) {
         Scene stack = empty_scene(space, 10);
         choose(stack, solver);
         if (has_hard_rows(solver)) stack.options.solver.iterations = 30;
@@ -233,7 +233,7 @@ TEST_CASE("few wedged piles gain energy under penalty", "[solver]") {
 TEST_CASE("every solver keeps joints together", "[fast][solver]") {
   for (const Table& table : widest_tables()) {
     for (Space space : kSpaces) {
-      for (Solver solver : kAll) {
+      for (Solver solver : kAllSolvers) {
         Scene scene = empty_scene(space, 10);
         choose(scene, solver);
         BodyId last;
@@ -264,7 +264,7 @@ TEST_CASE("every solver keeps joints together", "[fast][solver]") {
 TEST_CASE("four substeps turn a jointed rod as four steps do", "[fast][solver]") {
   if (!has_table(double_table())) return;
   for (Space space : kSpaces) {
-    for (Solver solver : kAll) {
+    for (Solver solver : kAllSolvers) {
       const auto kept = [&](double dt, int substeps) {
         Scene scene = empty_scene(space, 0);
         scene.options.solver.method = solver;
@@ -293,7 +293,7 @@ TEST_CASE("four substeps turn a jointed rod as four steps do", "[fast][solver]")
 TEST_CASE("what rests bears its weight, by any solver", "[fast][solver]") {
   if (!has_table(double_table())) return;
   for (Space space : kSpaces) {
-    for (Solver solver : kAll) {
+    for (Solver solver : kAllSolvers) {
       for (int substeps : {1, 4}) {
         Scene scene = empty_scene(space, 10);
         scene.options.solver.method = solver, scene.options.substeps = substeps;
@@ -341,7 +341,7 @@ TEST_CASE("conjugate gradients take impulses whose squares are infinite", "[fast
 TEST_CASE("every solver has the same bits on every instruction set, layout and thread count",
           "[fast][bits][solver]") {
   for (Space space : kSpaces) {
-    for (Solver solver : kAll) {
+    for (Solver solver : kAllSolvers) {
       const Plan plan = compile(everything(space, solver));
       for (Precision precision : {Precision::f32, Precision::f64}) {
         std::vector<std::uint64_t> reference;
@@ -368,7 +368,7 @@ TEST_CASE("more sweeps leave smaller residuals, and looking changes nothing",
           "[fast][solver][long]") {
   if (!has_table(double_table())) return;
   for (Space space : kSpaces) {
-    for (Solver solver : kAll) {
+    for (Solver solver : kAllSolvers) {
       Scene scene = everything(space, solver);
       std::vector<double> residuals;
       for (int iterations : {2, 20, 200, 2000}) {

@@ -25,7 +25,7 @@ Bytes bytes_of_text(const std::string& text) {
 Bytes forged(const std::string& dataset, std::size_t element, const void* value, hid_t type) {
   const Folder folder;
   const fs::path file = folder / "forged.h5";
-  write_file(file, honest());
+  write_bytes(file, honest());
   const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t data = H5Dopen2(h5, dataset.c_str(), H5P_DEFAULT);
   REQUIRE(data >= 0);
@@ -93,9 +93,9 @@ TEST_CASE("files that are no recordings are refused by name", "[fast][record]") 
   };
   refused_file(folder / "absent.h5", "No such file");
   refused_file(folder.path(), "is a directory");
-  write_file(folder / "empty.h5", {});
+  write_bytes(folder / "empty.h5", {});
   refused_file(folder / "empty.h5", "too short");
-  write_file(folder / "text.h5", bytes_of_text(std::string(2000, 'x')));
+  write_bytes(folder / "text.h5", bytes_of_text(std::string(2000, 'x')));
   refused_file(folder / "text.h5", "is not a manyworlds recording");
   // Another program's HDF5 file, and an empty one in our frame.
   const hid_t h5 =
@@ -167,7 +167,7 @@ TEST_CASE("a recording of another make is refused", "[fast][record]") {
   // What lies in another file is not looked for.
   const Folder folder;
   const std::string other = folder / "other.h5";
-  write_file(other, honest());
+  write_bytes(other, honest());
   refused(rebuilt([&](hid_t h5) {
             H5Ldelete(h5, "step", H5P_DEFAULT);
             H5Lcreate_external(other.c_str(), "step", h5, "step", H5P_DEFAULT, H5P_DEFAULT);

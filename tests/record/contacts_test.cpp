@@ -28,7 +28,8 @@ BatchOptions observing(int worlds, int threads = 1) {
   return options;
 }
 
-void check_equal(const std::vector<RecordedContact>& a, const std::vector<RecordedContact>& b) {
+void check_same_contacts(const std::vector<RecordedContact>& a,
+                         const std::vector<RecordedContact>& b) {
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK((a[i].body_a == b[i].body_a && a[i].body_b == b[i].body_b));
@@ -101,7 +102,7 @@ TEST_CASE("recorded contacts are those that were observed, whatever batch and th
   CHECK(a.contacts(0, 1).empty());
   for (std::int64_t s = 1; s <= 12; ++s) {
     auto all = a.contacts(s, 1);
-    check_equal(all, seen[static_cast<std::size_t>(s - 1)]);
+    check_same_contacts(all, seen[static_cast<std::size_t>(s - 1)]);
     most = std::max(most, all.size());
     // Bounded: those of the largest forces, in their order.
     const auto few = b.contacts(s, 0);
@@ -150,7 +151,7 @@ TEST_CASE("contacts that are damaged are refused", "[fast][record]") {
   const Bytes whole = bytes_of(folder / "run.h5");
   const auto forged = [&](const char* name, hsize_t at, std::int64_t value) {
     const fs::path file = folder / "forged.h5";
-    write_file(file, whole);
+    write_bytes(file, whole);
     const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     const hid_t data = H5Dopen2(h5, (std::string("kinds/0/contacts/") + name).c_str(), H5P_DEFAULT);
     REQUIRE(data >= 0);

@@ -28,7 +28,7 @@ class Messages {
 
   // What is wrong with what is said of these bytes. `place` is a name that it has to give.
   std::string of(const Bytes& bytes, const std::string& place = {}, bool must_fail = true) {
-    write_file(file_, bytes);
+    write_bytes(file_, bytes);
     return of_file(file_, place, must_fail);
   }
   std::string of_file(const fs::path& file, const std::string& place = {}, bool must_fail = true) {
@@ -233,13 +233,13 @@ TEST_CASE("a damaged part file says so in one line", "[fast][record][messages]")
 
 TEST_CASE("what is no recording at all is told from one", "[fast][record][messages]") {
   const Folder folder;
-  write_file(folder / "text", Bytes(2000, std::byte{'x'}));
-  write_file(folder / "escape", Bytes(2000, std::byte{0x1b}));
-  write_file(folder / "empty", {});
-  write_file(folder / "zeros", Bytes(4096));
+  write_bytes(folder / "text", Bytes(2000, std::byte{'x'}));
+  write_bytes(folder / "escape", Bytes(2000, std::byte{0x1b}));
+  write_bytes(folder / "empty", {});
+  write_bytes(folder / "zeros", Bytes(4096));
   H5Fclose(H5Fcreate((folder / "other").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
   REQUIRE(mkfifo((folder / "fifo").c_str(), 0600) == 0);
-  write_file(folder / "secret", honest());
+  write_bytes(folder / "secret", honest());
   REQUIRE(chmod((folder / "secret").c_str(), 0) == 0);
   REQUIRE(chmod(folder.path().c_str(), 0777) == 0);
   check_messages([&](Messages& messages) -> std::string {

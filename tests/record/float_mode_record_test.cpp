@@ -20,12 +20,12 @@ std::string contents(const fs::path& file) {
 }
 
 // Recorded from first to last in the mode, and replayed in it.
-Bytes recorded(const InMode& in_mode) {
+StateBytes recorded(const InMode& in_mode) {
   const Folder folder;
   const fs::path file = folder / "run.h5";
   const Plan plan = compile(recorded_scene());
   const Vec3 impulse(0.1, 0.2, 1.0 / 3);
-  Bytes out;
+  StateBytes out;
   in_mode([&] {
     Batch batch(plan, {.worlds = 3, .threads = 1});
     Recorder recorder(batch, file, {.worlds = {0, 2}, .every = 2});
@@ -46,9 +46,9 @@ Bytes recorded(const InMode& in_mode) {
   return out;
 }
 
-Bytes json(const InMode& in_mode) {
+StateBytes json(const InMode& in_mode) {
   const Scene scene = recorded_scene();
-  Bytes out;
+  StateBytes out;
   in_mode([&] {
     const std::string text = scene_to_json(scene);
     out.add(text);

@@ -1,7 +1,6 @@
 // A small honest recording, and what becomes of it in other hands.
 #pragma once
 
-#include <fstream>
 #include <functional>
 #include <vector>
 
@@ -11,14 +10,6 @@
 #include "tests/record/support.hpp"
 
 namespace manyworlds::test {
-
-using Bytes = std::vector<std::byte>;
-
-inline void write_file(const fs::path& file, const Bytes& bytes) {
-  std::ofstream out(file, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()),
-            static_cast<std::streamsize>(bytes.size()));
-}
 
 // A ball that falls on the ground for 12 steps, with impulses at times and reset once.
 inline void record_ball(const fs::path& file) {
@@ -49,7 +40,7 @@ inline const Bytes& honest() {
 inline Bytes rebuilt(const std::function<void(hid_t)>& change) {
   const Folder folder;
   const fs::path file = folder / "rebuilt.h5";
-  write_file(file, honest());
+  write_bytes(file, honest());
   const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   change(h5);
   H5Fclose(h5);

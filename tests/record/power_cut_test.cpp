@@ -15,12 +15,6 @@
 namespace manyworlds::test {
 namespace {
 
-void write_bytes(const fs::path& file, const std::vector<std::byte>& bytes) {
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-}
-
 // Every few steps a push and a sample, and flushed with every call.
 void run(const fs::path& file, int calls, double flush_seconds, bool close) {
   Batch batch(compile(crowd(Space::planar)), batch_options(widest_tables().front(), 4));

@@ -117,4 +117,12 @@ inline void disturb(Batch& batch, int round) {
   }
 }
 
+using Bytes = std::vector<std::byte>;
+
+inline void write_bytes(const fs::path& file, const Bytes& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()),
+            static_cast<std::streamsize>(bytes.size()));
+}
+
 }  // namespace manyworlds::test

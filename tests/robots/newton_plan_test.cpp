@@ -24,7 +24,9 @@ Scene empty_scene() {
   return scene;
 }
 double about_z(double degrees) { return degrees * std::numbers::pi / 180; }
-Quat turned(double degrees) { return Quat(Eigen::AngleAxisd(about_z(degrees), Vec3::UnitZ())); }
+Quat turned_about_z(double degrees) {
+  return Quat(Eigen::AngleAxisd(about_z(degrees), Vec3::UnitZ()));
+}
 
 int candidates(const Plan& plan) {
   int out = 0;
@@ -37,7 +39,7 @@ int candidates(const Plan& plan) {
 TEST_CASE("hinges begin within half a turn of where their frames coincide", "[robots][fast]") {
   Scene scene = empty_scene();
   Body a = box(Vec3::Zero()), b = box(Vec3::Zero());
-  a.rotation = turned(170), b.rotation = turned(-170);
+  a.rotation = turned_about_z(170), b.rotation = turned_about_z(-170);
   scene.add(a), scene.add(b);
   Joint hinge;
   hinge.body_a = BodyId(0), hinge.body_b = BodyId(1);

@@ -11,6 +11,7 @@
 #include "src/plan/plan_data.hpp"
 #include "tests/support/approx.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/scene_cases.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied_bits.hpp"
 
@@ -82,11 +83,6 @@ Scene balls() {
 // Where something rests is as exact as Newton's last step: by default 1e-8 m.
 constexpr double kExact = 1e-26;
 double still(const Table& table) { return pick(table, 2e-6, 1e-9); }  // m
-
-std::string only_issue(const Scene& scene) {
-  const std::vector<Issue> issues = validate(scene);
-  return issues.size() == 1 ? to_string(issues[0]) : std::to_string(issues.size()) + " issues";
-}
 
 }  // namespace
 

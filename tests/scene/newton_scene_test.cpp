@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <limits>
 
 #include "manyworlds/plan.hpp"
 #include "tests/support/joints.hpp"
@@ -10,9 +9,6 @@
 
 namespace manyworlds::test {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> issues_of(const Scene& scene) {
   std::vector<std::string> out;

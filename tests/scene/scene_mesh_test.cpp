@@ -23,7 +23,6 @@ using test::tetrahedron;
 using test::together;
 using test::torus_mesh;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDensity = 700;
 
 // Of the same solid made of shapes, whose closed forms have their own tests.
@@ -98,7 +97,7 @@ TEST_CASE("icospheres converge to the sphere with the square of the edge", "[fas
 TEST_CASE("tori converge to 2 pi^2 R r^2 and m (R^2 + 3/4 r^2)", "[fast][scene]") {
   const double ring = 1;
   const double tube = 0.4;
-  const double mass = kDensity * 2 * kPi * kPi * ring * tube * tube;
+  const double mass = kDensity * 2 * std::numbers::pi * std::numbers::pi * ring * tube * tube;
   const double across = mass * (ring * ring / 2 + 5 * tube * tube / 8);
   const double axial = mass * (ring * ring + 3 * tube * tube / 4);
   const MassProperties torus{mass, Vec3::Zero(), diagonal(across, across, axial)};

@@ -1,6 +1,5 @@
 // What validate() says about bodies: state, mass properties, jitter.
 #include <catch2/catch.hpp>
-#include <limits>
 
 #include "tests/support/scene_cases.hpp"
 #include "tests/support/scenes.hpp"
@@ -11,8 +10,8 @@ namespace {
 using test::BadInput;
 using test::check_each;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using test::kInf;
+using test::kNan;
 const char* const kBody = "body 1 'crate': ";
 
 Scene spatial() { return test::spatial_scene_with(Box{{0.5, 0.4, 0.3}}); }
@@ -25,7 +24,7 @@ Scene with_mass_properties(Scene scene) {
 }
 MassProperties& given(Scene& scene) { return *crate(scene).mass_properties; }
 
-Mat3 diagonal(double x, double y, double z) { return Vec3(x, y, z).asDiagonal(); }
+Mat3 diagonal_of(double x, double y, double z) { return Vec3(x, y, z).asDiagonal(); }
 
 }  // namespace
 
@@ -174,19 +173,19 @@ TEST_CASE("bad inertia tensors are named", "[fast][scene]") {
               {"mass_properties.inertia(0,2)", "must be symmetric", entry(0, 2, 1e-5)},
               {"mass_properties.inertia(1,2)", "must be symmetric", entry(2, 1, -1e-5)},
               {inertia, "must be positive definite", set(Mat3::Zero())},
-              {inertia, "must be positive definite", set(diagonal(0, 1, 1))},
-              {inertia, "must be positive definite", set(diagonal(1, -1, 1))},
-              {inertia, "must be positive definite", set(diagonal(-1, -1, -1))},
-              {inertia, "must not exceed the sum", set(diagonal(1, 1, 2.1))},
-              {inertia, "must not exceed the sum", set(diagonal(1, 1, 2 + 1e-5))},
-              {inertia, "must not exceed the sum", set(diagonal(5, 1, 1))},
-              {inertia, "must be between", set(diagonal(1e-31, 1e-31, 1e-31))},
-              {inertia, "must be between", set(diagonal(1e31, 1e31, 1e31))}});
+              {inertia, "must be positive definite", set(diagonal_of(0, 1, 1))},
+              {inertia, "must be positive definite", set(diagonal_of(1, -1, 1))},
+              {inertia, "must be positive definite", set(diagonal_of(-1, -1, -1))},
+              {inertia, "must not exceed the sum", set(diagonal_of(1, 1, 2.1))},
+              {inertia, "must not exceed the sum", set(diagonal_of(1, 1, 2 + 1e-5))},
+              {inertia, "must not exceed the sum", set(diagonal_of(5, 1, 1))},
+              {inertia, "must be between", set(diagonal_of(1e-31, 1e-31, 1e-31))},
+              {inertia, "must be between", set(diagonal_of(1e31, 1e31, 1e31))}});
 
   Scene scene = with_mass_properties(spatial());
-  given(scene).inertia = diagonal(1, 1, 2);  // a flat disc: the limit of the triangle inequality
+  given(scene).inertia = diagonal_of(1, 1, 2);  // a flat disc: the limit of the triangle inequality
   CHECK(validate(scene).empty());
-  given(scene).inertia = diagonal(2e-5, 1, 1);  // a thin rod
+  given(scene).inertia = diagonal_of(2e-5, 1, 1);  // a thin rod
   CHECK(validate(scene).empty());
   // Off-diagonal entries that hide a moment above the sum of the others.
   Mat3 rotated;
@@ -208,7 +207,7 @@ TEST_CASE("planar bodies use one moment of inertia only", "[fast][scene]") {
        {field, "is 1e-40 kg m^2", moment(1e-40)},
        {"mass_properties.center.z", "must be 0", [](Scene& s) { given(s).center.z() = 1; }}});
   Scene scene = with_mass_properties(planar());
-  given(scene).inertia = diagonal(kNan, -1, 1);
+  given(scene).inertia = diagonal_of(kNan, -1, 1);
   CHECK(validate(scene).empty());
 }
 

@@ -2,15 +2,12 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/support/joints.hpp"
 #include "tests/support/scene_cases.hpp"
 
 namespace manyworlds::test {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Body 0 fixed, 1 and 2 dynamic; joint 0 'elbow' between 1 and 2.
 Scene jointed(Space space, JointType type) {

@@ -1,12 +1,12 @@
 // What validate() says about triangle meshes: every issue at its place, in its exact words.
 #include <catch2/catch.hpp>
-#include <limits>
 #include <string>
 
 #include "manyworlds/mesh.hpp"
 #include "manyworlds/plan.hpp"
 #include "tests/support/mass.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/scene_cases.hpp"
 
 namespace manyworlds {
 namespace {
@@ -17,8 +17,8 @@ using test::moved;
 using test::together;
 using Lines = std::vector<std::string>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using test::kInf;
+using test::kNan;
 
 Lines lines(const TriangleMesh& mesh) {
   Lines result;

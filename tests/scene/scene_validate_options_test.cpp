@@ -1,6 +1,5 @@
 // What validate() says about options and about the size of a scene.
 #include <catch2/catch.hpp>
-#include <limits>
 
 #include "tests/support/scene_cases.hpp"
 
@@ -9,12 +8,11 @@ namespace {
 
 using test::BadInput;
 using test::check_each;
+using test::circle_scene;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-Scene spatial() { return test::spatial_scene_with(Sphere{0.5}); }
-Scene planar() { return test::planar_scene_with(Circle{0.5}); }
+using test::kInf;
+using test::kNan;
+using test::sphere_scene;
 
 BadInput bad(const std::string& field, double Options::*member, double value,
              const std::string& message) {
@@ -119,15 +117,15 @@ TEST_CASE("bad options are named with their value", "[fast][scene]") {
       {"contact_capacity", "is 65537", [](Scene& s) { s.options.contact_capacity = 65537; }},
       {"gravity.x", "is nan m/s^2", [](Scene& s) { s.options.gravity.x() = kNan; }},
       {"gravity.y", "is inf m/s^2", [](Scene& s) { s.options.gravity.y() = kInf; }}};
-  check_each(spatial(), "options.", cases);
-  check_each(planar(), "options.", cases);
-  check_each(planar(), "options.",
+  check_each(sphere_scene(), "options.", cases);
+  check_each(circle_scene(), "options.", cases);
+  check_each(circle_scene(), "options.",
              {{"gravity.z", "is -10 m/s^2, must be 0 in a planar scene",
                [](Scene& s) { s.options.gravity.z() = -10; }}});
 }
 
 TEST_CASE("the ends of the option ranges are valid", "[fast][scene]") {
-  Scene scene = spatial();
+  Scene scene = sphere_scene();
   Options& options = scene.options;
   options.substeps = options.contact.restitution_sweeps = 1;
   options.contact.frequency = 0, options.contact.damping_ratio = 0;
@@ -141,12 +139,12 @@ TEST_CASE("bounds must hold something and be finite", "[fast][scene]") {
   const auto set = [](const Vec3& low, const Vec3& high) {
     return [=](Scene& s) { s.options.bounds = Eigen::AlignedBox3d(low, high); };
   };
-  check_each(spatial(), "options.",
+  check_each(sphere_scene(), "options.",
              {{"bounds", "are empty: min.y is 1 m, must be at most max.y, which is -1 m",
                set({-1, 1, -1}, {1, -1, 1})},
               {"bounds.min.x", "is nan m", set({kNan, -1, -1}, {1, 1, 1})},
               {"bounds.max.z", "is inf m", set({-1, -1, -1}, {1, 1, kInf})}});
-  Scene scene = spatial();
+  Scene scene = sphere_scene();
   scene.options.bounds.emplace();  // Eigen's empty box
   CHECK(test::places(scene) ==
         std::vector<std::string>{"options.bounds", "options.bounds", "options.bounds"});
@@ -161,7 +159,7 @@ TEST_CASE("a scene holds at most 32767 bodies and shapes", "[fast][scene]") {
   scene.add(fixed);
   CHECK(test::places(scene) == std::vector<std::string>{"bodies"});
 
-  Scene many_shapes = spatial();
+  Scene many_shapes = sphere_scene();
   many_shapes.bodies[0].shapes.assign(32766, Shape{});
   CHECK(validate(many_shapes).empty());
   many_shapes.bodies[0].shapes.emplace_back();

@@ -1,7 +1,6 @@
 // What validate() says about shapes: each bad input gives exactly one issue at its place.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 
 #include "tests/support/scene_cases.hpp"
 
@@ -10,14 +9,14 @@ namespace {
 
 using test::BadInput;
 using test::check_each;
+using test::circle_scene;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using test::kInf;
+using test::kNan;
+using test::sphere_scene;
 
 // Body 1, shape 0 of each scene is what the cases change.
-Scene sphere_scene() { return test::spatial_scene_with(Sphere{0.5}); }
 Scene box_scene() { return test::spatial_scene_with(Box{{0.5, 0.4, 0.3}}); }
-Scene circle_scene() { return test::planar_scene_with(Circle{0.5}); }
 Scene polygon_scene(std::vector<Vec2> vertices) {
   return test::planar_scene_with(Polygon{std::move(vertices)});
 }

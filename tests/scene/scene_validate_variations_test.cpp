@@ -5,6 +5,7 @@
 
 #include "manyworlds/plan.hpp"
 #include "tests/support/newton_scenes.hpp"
+#include "tests/support/scene_cases.hpp"
 
 namespace manyworlds::test {
 namespace {
@@ -18,12 +19,6 @@ Scene scene_with(Variation variation) {
   scene.add(given);
   scene.variations = {variation};
   return scene;
-}
-
-std::string only_issue(const Scene& scene) {
-  const std::vector<Issue> issues = validate(scene);
-  if (issues.size() != 1) return std::to_string(issues.size()) + " issues";
-  return to_string(issues[0]);
 }
 
 Variation of(Variation v, int body, int shape = -1) {

@@ -14,8 +14,6 @@
 namespace manyworlds {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 Vec3 area_of(const Surface& s, const std::array<int, 3>& t) {
@@ -101,7 +99,7 @@ TEST_CASE("a surface in space is closed, has the solid's volume, and lies on it"
     CHECK(is_closed(s, 1));
     const double solid = mass_of(geometry, Space::spatial), found = volume_of(s);
     // Chords stay outside of a circle of cos(a / 2) of the radius, along a ring and across it.
-    const double a = 2 * kPi / around;
+    const double a = 2 * std::numbers::pi / around;
     CHECK(found <= solid * (1 + 1e-12));
     CHECK(found >= solid * (flat ? 1 - 1e-12 : std::pow(std::cos(a / 2), 6)));
     // A point out along the normal is that far away.
@@ -130,7 +128,7 @@ TEST_CASE("a surface in the plane has the solid's area and outline", "[fast][sce
     check_sound(s);
     double area = 0;
     for (const auto& t : s.triangles) area += area_of(s, t).z();
-    const double solid = mass_of(geometry, Space::planar), a = 2 * kPi / around;
+    const double solid = mass_of(geometry, Space::planar), a = 2 * std::numbers::pi / around;
     CHECK(area <= solid * (1 + 1e-12));
     CHECK(area >= solid * (flat ? 1 : std::sin(a) / a) * (1 - 1e-12));
     REQUIRE(s.lines.size() == 1);

@@ -44,12 +44,12 @@ const Mode kModes[] = {
 void check_modes(const std::vector<ModeEntry>& entries) {
   for (const ModeEntry& entry : entries) {
     INFO(entry.name);
-    const Bytes expected = entry.call([](const auto& act) { act(); });
+    const StateBytes expected = entry.call([](const auto& act) { act(); });
     CHECK(!expected.empty());
     for (const Mode& mode : kModes) {
       INFO(mode.name);
       bool called = false, kept = true;
-      const Bytes found = entry.call([&](const std::function<void()>& act) {
+      const StateBytes found = entry.call([&](const std::function<void()>& act) {
         std::fenv_t before;
         std::feholdexcept(&before);
         mode.enter();

@@ -13,7 +13,7 @@
 namespace manyworlds::test {
 
 // What a call gave, byte by byte.
-class Bytes {
+class StateBytes {
  public:
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
@@ -29,7 +29,7 @@ class Bytes {
   void add(const Matrix& m) {
     for (Eigen::Index i = 0; i < m.size(); ++i) add(m(i));
   }
-  bool operator==(const Bytes&) const = default;
+  bool operator==(const StateBytes&) const = default;
   bool empty() const { return bytes_.empty(); }
 
  private:
@@ -43,7 +43,7 @@ using InMode = std::function<void(const std::function<void()>&)>;
 // and gives what they gave.
 struct ModeEntry {
   const char* name;
-  std::function<Bytes(const InMode& in_mode)> call;
+  std::function<StateBytes(const InMode& in_mode)> call;
 };
 
 // Each entry gives in every mode the bytes that it gives in the default one, and leaves the mode,

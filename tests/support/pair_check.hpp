@@ -28,6 +28,12 @@ struct PairPromise {
   double left_out = 0;     // m, how much deeper a point may be that is left out
   double twin = 0;         // m, what the twin's own answer may be wrong by
 };
+// With up to n points, and otherwise exact.
+inline PairPromise points(int n) {
+  PairPromise p;
+  p.max_points = n;
+  return p;
+}
 
 // Counts, and the first few deviations in words with every number needed to see them again.
 struct PairResult {

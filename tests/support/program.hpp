@@ -72,4 +72,19 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+#if MW_HAVE_CLI
+// Whether the program's `info` has this line.
+inline bool program_has(const std::string& line) {
+  return contains(run_program(kProgram, ScratchFolder(), "info").out, line);
+}
+inline bool program_records() { return program_has("recordings   yes"); }
+inline bool program_reads_mjcf() { return program_has("mjcf         yes"); }
+
+// A page that holds nothing but the place for recordings.
+inline void write_empty_page(const ScratchFolder& folder) {
+  std::ofstream(folder / "viewer.html")
+      << "<meta name=\"manyworlds-page\" content=\"1\"><!-- manyworlds: recordings -->";
+}
+#endif
+
 }  // namespace manyworlds::test

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "manyworlds/scene.hpp"
 
 namespace manyworlds::test {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInf = std::numeric_limits<double>::infinity();
 
 struct BadInput {
   std::string field;    // end of Issue::place
@@ -21,6 +25,12 @@ inline std::vector<std::string> places(const Scene& scene) {
   std::vector<std::string> result;
   for (const Issue& issue : validate(scene)) result.push_back(issue.place);
   return result;
+}
+
+// The text of its one issue, or how many it has.
+inline std::string only_issue(const Scene& scene) {
+  const std::vector<Issue> issues = validate(scene);
+  return issues.size() == 1 ? to_string(issues[0]) : std::to_string(issues.size()) + " issues";
 }
 
 // A valid scene, spoilt in each way in turn, has exactly the one issue at `part` + field.
@@ -62,5 +72,8 @@ inline Scene spatial_scene_with(Geometry hull) {
 inline Scene planar_scene_with(Geometry hull) {
   return scene_with(Space::planar, HalfPlane{}, std::move(hull));
 }
+
+inline Scene sphere_scene() { return spatial_scene_with(Sphere{0.5}); }
+inline Scene circle_scene() { return planar_scene_with(Circle{0.5}); }
 
 }  // namespace manyworlds::test

@@ -9,7 +9,7 @@
 namespace manyworlds::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -56,7 +56,7 @@ double searched_separation(Solid a, Solid b, std::vector<Vec3> looks) {
   const std::size_t starts = 6;
   std::partial_sort(best.begin(), best.begin() + starts, best.end(),
                     [](const auto& x, const auto& y) { return x.first > y.first; });
-  double result = -kInfinity;
+  double result = -kUnbounded;
   for (std::size_t i = 0; i < starts; ++i) {
     auto [s, n] = best[i];
     double phase = 0;
@@ -81,14 +81,14 @@ double searched_separation(Solid a, Solid b, std::vector<Vec3> looks) {
 // From a point outside of a hull the nearest is on a face, where that is the one it is farthest in
 // front of, or on an edge.
 double distance_to_hull(const Solid& s, const Vec3& p) {
-  double inside = -kInfinity, outside = kInfinity;
+  double inside = -kUnbounded, outside = kUnbounded;
   Vec3 foot = p;
   for (const auto& [point, n] : s.sides) {
     const double height = n.dot(p - point);
     if (height > inside) inside = height, foot = p - height * n;
   }
   if (inside <= 0) return inside;
-  double over = -kInfinity;
+  double over = -kUnbounded;
   for (const auto& [point, n] : s.sides) over = std::max(over, n.dot(foot - point));
   if (over <= 1e-12) return inside;
   for (const auto& [a, b] : s.rims) outside = std::min(outside, point_segment(p, a, b));
@@ -154,7 +154,7 @@ std::optional<Vec3> outward_of_cylinder(const Solid& s, const Vec3& p, double cl
 }
 
 std::optional<Vec3> outward_of_hull(const Solid& s, const Vec3& p, double clear) {
-  double first = -kInfinity, second = -kInfinity;
+  double first = -kUnbounded, second = -kUnbounded;
   Vec3 normal = Vec3::Zero();
   for (const auto& [point, n] : s.sides) {
     const double height = n.dot(p - point);
@@ -169,7 +169,7 @@ std::optional<Vec3> outward_of_hull(const Solid& s, const Vec3& p, double clear)
     if (distance < clear || (distance > first && distance < first + 1e-9)) return std::nullopt;
     if (distance == first) return normal;
     Vec3 nearest = p;
-    double best = kInfinity;
+    double best = kUnbounded;
     for (const auto& [a, b] : s.rims) {
       const Vec3 d = b - a;
       const Vec3 q = a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;

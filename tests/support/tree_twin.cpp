@@ -5,7 +5,6 @@ namespace manyworlds::test {
 namespace {
 
 using kernels::TreeJointKind;
-using Numbers = TreeTwin::Numbers;
 
 template <class Visit>  // visit(link, joint, first coordinate, first dof)
 void for_each_joint(const std::vector<TwinLink>& links, Visit visit) {
@@ -18,7 +17,7 @@ void for_each_joint(const std::vector<TwinLink>& links, Visit visit) {
   }
 }
 
-Quat quaternion(const Numbers& q, int at) {
+Quat quaternion(const Eigen::VectorXd& q, int at) {
   return Quat(q[at], q[at + 1], q[at + 2], q[at + 3]).normalized();
 }
 
@@ -37,8 +36,8 @@ void spin_by(TwinMotion& m, const Quat& r, const Vec3& velocity, const Vec3& acc
   m.spin += own;
 }
 
-void apply(TwinMotion& m, const NewTreeJoint& joint, const Numbers& q, const Numbers& v,
-           const Numbers& a, int c, int k) {
+void apply(TwinMotion& m, const NewTreeJoint& joint, const Eigen::VectorXd& q,
+           const Eigen::VectorXd& v, const Eigen::VectorXd& a, int c, int k) {
   const Vec3 axis = joint.axis.normalized();
   switch (joint.kind) {
     case TreeJointKind::slide: {
@@ -88,8 +87,8 @@ int TreeTwin::coordinates() const {
   return count;
 }
 
-std::vector<TwinMotion> TreeTwin::motion(const Numbers& q, const Numbers& v,
-                                         const Numbers& a) const {
+std::vector<TwinMotion> TreeTwin::motion(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                         const Eigen::VectorXd& a) const {
   std::vector<TwinMotion> out;
   int c = 0, k = 0;
   for (const TwinLink& link : links_) {
@@ -114,17 +113,18 @@ namespace {
 
 // Velocities of links per unit velocity of each dof, [dof][link].
 using Partials = std::vector<std::vector<TwinMotion>>;
-Partials partials_of(const TreeTwin& twin, const Numbers& q) {
+Partials partials_of(const TreeTwin& twin, const Eigen::VectorXd& q) {
   const int n = twin.dofs();
   Partials out;
-  for (int k = 0; k < n; ++k) out.push_back(twin.motion(q, Numbers::Unit(n, k), Numbers::Zero(n)));
+  for (int k = 0; k < n; ++k)
+    out.push_back(twin.motion(q, Eigen::VectorXd::Unit(n, k), Eigen::VectorXd::Zero(n)));
   return out;
 }
 
 // Generalised forces of a moment and a force at the centre of mass of each link.
 template <class Wrench>
-Numbers project(const Partials& partials, std::size_t links, Wrench wrench) {
-  Numbers out = Numbers::Zero(static_cast<Eigen::Index>(partials.size()));
+Eigen::VectorXd project(const Partials& partials, std::size_t links, Wrench wrench) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(partials.size()));
   for (std::size_t i = 0; i < links; ++i) {
     const std::pair<Vec3, Vec3> w = wrench(i);
     for (std::size_t k = 0; k < partials.size(); ++k) {
@@ -138,12 +138,12 @@ Numbers project(const Partials& partials, std::size_t links, Wrench wrench) {
 
 }  // namespace
 
-Eigen::MatrixXd TreeTwin::inertia(const Numbers& q) const {
+Eigen::MatrixXd TreeTwin::inertia(const Eigen::VectorXd& q) const {
   const int n = dofs();
   const Partials partials = partials_of(*this, q);
   Eigen::MatrixXd out(n, n);
   for (int k = 0; k < n; ++k) {
-    const auto m = motion(q, Numbers::Zero(n), Numbers::Unit(n, k));
+    const auto m = motion(q, Eigen::VectorXd::Zero(n), Eigen::VectorXd::Unit(n, k));
     out.col(k) = project(partials, links_.size(), [&](std::size_t i) {
       return std::pair<Vec3, Vec3>(moments(links_[i], m[i]) * m[i].angular,
                                    links_[i].frame.mass * m[i].acceleration);
@@ -155,9 +155,9 @@ Eigen::MatrixXd TreeTwin::inertia(const Numbers& q) const {
   return out;
 }
 
-Numbers TreeTwin::forces(const Numbers& q, const Numbers& v) const {
-  const auto m = motion(q, v, Numbers::Zero(dofs()));
-  Numbers out = project(partials_of(*this, q), links_.size(), [&](std::size_t i) {
+Eigen::VectorXd TreeTwin::forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+  const auto m = motion(q, v, Eigen::VectorXd::Zero(dofs()));
+  Eigen::VectorXd out = project(partials_of(*this, q), links_.size(), [&](std::size_t i) {
     const Mat3 inertia = moments(links_[i], m[i]);
     const Vec3 rate = inertia * m[i].angular + m[i].spin.cross(inertia * m[i].spin);
     return std::pair<Vec3, Vec3>(
@@ -171,16 +171,16 @@ Numbers TreeTwin::forces(const Numbers& q, const Numbers& v) const {
   return out;
 }
 
-Numbers TreeTwin::damping() const {
-  Numbers out = Numbers::Zero(dofs());
+Eigen::VectorXd TreeTwin::damping() const {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(dofs());
   for_each_joint(links_, [&](auto, const NewTreeJoint& j, int, int k) {
     for (int i = 0; i < kernels::dofs_of(j.kind); ++i) out[k + i] = j.damping;
   });
   return out;
 }
 
-double TreeTwin::energy(const Numbers& q, const Numbers& v) const {
-  const auto m = motion(q, v, Numbers::Zero(dofs()));
+double TreeTwin::energy(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+  const auto m = motion(q, v, Eigen::VectorXd::Zero(dofs()));
   double out = 0;
   for (std::size_t i = 0; i < m.size(); ++i) {
     out += links_[i].frame.mass * (0.5 * m[i].velocity.squaredNorm() - gravity_.dot(m[i].center)) +
@@ -194,8 +194,9 @@ double TreeTwin::energy(const Numbers& q, const Numbers& v) const {
   return out;
 }
 
-Numbers TreeTwin::advanced(const Numbers& q, const Numbers& v, double dt) const {
-  Numbers out = q;
+Eigen::VectorXd TreeTwin::advanced(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                   double dt) const {
+  Eigen::VectorXd out = q;
   for_each_joint(links_, [&](auto, const NewTreeJoint& j, int c, int k) {
     if (kernels::coordinates_of(j.kind) == 1) {
       out[c] += dt * v[k];

@@ -39,7 +39,7 @@ Told told(const Task& task, EnvironmentOptions options, int worlds, int first) {
   }
   return out;
 }
-bool same_bits(const Told& a, const Told& b) {
+bool same_told(const Told& a, const Told& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("links, inertias and forces of a task have the bits of its world alone
           const Told found = told(task, options, worlds, 11 - worlds);
           if (reference.empty()) reference = found;
           INFO(task.name << ' ' << name(table) << ' ' << worlds);
-          CHECK(same_bits(found, reference));
+          CHECK(same_told(found, reference));
         }
       }
     }

@@ -37,7 +37,7 @@ Judge energy_judge(const Scene& scene, double length) {
   };
 }
 
-Material draw_material(Random& kind) {
+Material draw_pile_material(Random& kind) {
   const double friction = kind.chance(0.2) ? 0 : kind.uniform(0, 2);
   const double restitution = kind.chance(0.4) ? 0 : kind.chance(0.3) ? 1 : kind.uniform(0, 1);
   return {friction, restitution};
@@ -48,7 +48,7 @@ Drawn pile(Random& kind, Random& state, const Scale& scale, Space space) {
   Drawn out;
   Scene& scene = out.scene;
   scene = scene_of(space, scale);
-  const Material material = draw_material(kind);
+  const Material material = draw_pile_material(kind);
   scene.add(scenes::ground(space, material));
   const int count = kind.integer(2, 8), dim = space == Space::planar ? 2 : 3;
   const bool in_pit = kind.chance(0.5);
@@ -95,7 +95,7 @@ Drawn heavy_on_light(Random& kind, Random& state, const Scale& scale, Space spac
   Drawn out;
   Scene& scene = out.scene;
   scene = scene_of(space, scale);
-  const Material material = draw_material(kind);
+  const Material material = draw_pile_material(kind);
   scene.add(scenes::ground(space, material));
   const int count = kind.integer(2, 4);
   const double ratio = kind.log_uniform(least, most);

@@ -8,7 +8,7 @@
 namespace manyworlds::invariants {
 namespace {
 
-constexpr int kSteps = 6;
+constexpr int kStepsOfHit = 6;
 
 double mass_of_ball(Space space, double radius, double density) {
   return density * scenes::kPi *
@@ -73,7 +73,7 @@ Drawn ball_on_ring(Random& kind, Random& state, const Scale& scale, Space space,
     out.scene.bodies[static_cast<std::size_t>(i + 1)].position = sum * normal;
     expected.push_back(impulse / (mass * ratio) * normal);
   }
-  out.steps = kSteps;
+  out.steps = kStepsOfHit;
   out.judge = velocities_judge(expected, speed, 4);
   return out;
 }

@@ -104,10 +104,8 @@ Held held_by(const JointType& type, const JointFrames& at) {
 }
 
 // Linear and angular velocities of all bodies, one after another.
-using Rows = Eigen::MatrixXd;
-
-Rows rows_of(const Scene& scene, const std::vector<BodyNow>& bodies,
-             const std::vector<MassProperties>& masses) {
+Eigen::MatrixXd jacobian_of(const Scene& scene, const std::vector<BodyNow>& bodies,
+                            const std::vector<MassProperties>& masses) {
   std::vector<Eigen::RowVectorXd> rows;
   for (const Joint& joint : scene.joints) {
     const JointFrames at = frames_of(joint, bodies);
@@ -127,7 +125,7 @@ Rows rows_of(const Scene& scene, const std::vector<BodyNow>& bodies,
     for (const Vec3& along : held.along) add(along, Vec3::Zero());
     for (const Vec3& about : held.about) add(Vec3::Zero(), about);
   }
-  Rows out(static_cast<int>(rows.size()), 6 * static_cast<int>(bodies.size()));
+  Eigen::MatrixXd out(static_cast<int>(rows.size()), 6 * static_cast<int>(bodies.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) out.row(static_cast<int>(i)) = rows[i];
   return out;
 }
@@ -196,7 +194,7 @@ void set_moving(Random& state, Scene& scene, double spin) {
     v.segment<3>(at) = radius * state.uniform(0, 1) * draw_direction(state, scene.space);
     v.segment<3>(at + 3) = state.uniform(0, 1) * draw_axis(state, scene.space);
   }
-  const Rows rows = rows_of(scene, bodies, masses);
+  const Eigen::MatrixXd rows = jacobian_of(scene, bodies, masses);
   const Eigen::MatrixXd inverse = inverse_masses(scene, bodies, masses);
   const Eigen::MatrixXd loads = inverse * rows.transpose();
   v -= loads * (rows * loads).completeOrthogonalDecomposition().solve(rows * v);

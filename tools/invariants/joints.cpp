@@ -34,7 +34,7 @@ struct Allowed {
 
 // A slider takes its bodies apart for ever. Beyond this the speed of one body by the rotation of
 // the other has no digit left of what is allowed in float32.
-constexpr double kMostTravel = 30;  // typical lengths
+constexpr double kMostTravelOfSliders = 30;  // typical lengths
 
 bool parted(const std::vector<Joint>& joints, double most, const std::vector<BodyNow>& bodies) {
   return std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {
@@ -44,24 +44,24 @@ bool parted(const std::vector<Joint>& joints, double most, const std::vector<Bod
 }
 
 Judge isolated_judge(const Scene& scene, const Scale& scale, const Allowed& allowed) {
-  return
-      [masses = masses_of(scene), joints = scene.joints, most_travel = kMostTravel * scale.length,
-       allowed, start = Momenta(), ended = false](const Seen& seen) mutable {
-        const bool single = seen.precision == Precision::f32;
-        ended = ended || (single && parted(joints, most_travel, seen.now));
-        if (ended) return 0.0;
-        const Momenta now = momenta_of(masses, seen.now);
-        if (seen.step == 0) start = now;
-        double most = 0;
-        for (const double share :
-             {(now.linear - start.linear).norm() / (allowed.linear * start.linear_sum),
-              (now.angular - start.angular).norm() / (allowed.angular * start.angular_sum),
-              std::abs(now.kinetic - start.kinetic) / (allowed.energy * start.kinetic)}) {
-          if (!std::isfinite(share)) return HUGE_VAL;
-          most = std::max(most, share);
-        }
-        return most;
-      };
+  return [masses = masses_of(scene), joints = scene.joints,
+          most_travel = kMostTravelOfSliders * scale.length, allowed, start = Momenta(),
+          ended = false](const Seen& seen) mutable {
+    const bool single = seen.precision == Precision::f32;
+    ended = ended || (single && parted(joints, most_travel, seen.now));
+    if (ended) return 0.0;
+    const Momenta now = momenta_of(masses, seen.now);
+    if (seen.step == 0) start = now;
+    double most = 0;
+    for (const double share :
+         {(now.linear - start.linear).norm() / (allowed.linear * start.linear_sum),
+          (now.angular - start.angular).norm() / (allowed.angular * start.angular_sum),
+          std::abs(now.kinetic - start.kinetic) / (allowed.energy * start.kinetic)}) {
+      if (!std::isfinite(share)) return HUGE_VAL;
+      most = std::max(most, share);
+    }
+    return most;
+  };
 }
 
 Drawn isolated(Space space, Random& kind, Random& state, const Scale& scale, double slowest,

@@ -11,8 +11,8 @@ namespace manyworlds::invariants {
 namespace {
 
 constexpr int kClusterSteps = 120, kDrumSteps = 300, kSpinSteps = 600;
-constexpr double kStepsOfLaw = 3600;  // 60 s
-constexpr double kMostTravel = 0.99;  // body lengths per step
+constexpr double kStepsOfLaw = 3600;        // 60 s
+constexpr double kMostTravelOfStep = 0.99;  // body lengths per step
 
 enum class Momentum { linear, angular };
 
@@ -70,7 +70,7 @@ Drawn cluster(Random& kind, Random& state, const Scale& scale, Space space, Mome
   place_cluster(state, out.scene);
   double extent = scale.length;
   for (const Body& b : out.scene.bodies) extent = std::max(extent, b.position.norm());
-  const double speed = scale.length / scale.dt * state.log_uniform(0.01, kMostTravel);
+  const double speed = scale.length / scale.dt * state.log_uniform(0.01, kMostTravelOfStep);
   const Vec3 whirl = draw_axis(state, space) * (speed * state.uniform(0, 0.7) / extent);
   const double inward = state.uniform(0.3, 1), noise = state.uniform(0, 0.3);
   const double spin = state.chance(0.3) ? 0 : state.log_uniform(0.01, 0.5) / scale.dt;

@@ -110,8 +110,8 @@ Shape floor_shape(Random& random, DropFloor& floor, double size, const Material&
 }
 
 // The lowest point of the body is `gap` above the highest of the floor.
-void place(Body& body, const DropFloor& floor, const Geometry& geometry, double gap, double along,
-           double across) {
+void place_on(Body& body, const DropFloor& floor, const Geometry& geometry, double gap,
+              double along, double across) {
   const Vec3 up = scenes::up_of(floor.space);
   const Quat local = floor.rotation.conjugate() * body.rotation;
   const double bump =
@@ -150,7 +150,7 @@ Drawn draw_drop(Space space, Random& kind, Random& state, const Scale& scale) {
     const double fall = state.chance(0.1) ? 0 : thickness * state.uniform(0, 20);
     // What takes long to fall starts with the speed of the rest of the way.
     const double gap = std::min(fall, 0.5 * scale.gravity * std::pow(kFall * scale.dt, 2));
-    place(body, floor, geometry, gap, 2.5 * size * (i % 3 - 1), 2.5 * size * (i / 3));
+    place_on(body, floor, geometry, gap, 2.5 * size * (i % 3 - 1), 2.5 * size * (i / 3));
     body.linear_velocity = -std::sqrt(2 * scale.gravity * (fall - gap)) * scenes::up_of(space);
     const double aside = state.chance(0.5) ? 0 : state.uniform(0, std::sqrt(scale.gravity * size));
     const Vec3 heading = floor.rotation * Vec3(aside, 0, 0);

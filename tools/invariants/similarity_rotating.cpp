@@ -76,7 +76,7 @@ Geometry draw_rotor(Random& random, double size) {
 }
 
 // Spins freely, about any axis.
-Model free_spin(ModelDraw& in) {
+Model free_spin_model(ModelDraw& in) {
   Model model;
   model.scene = free_scene(Space::spatial, in.scale);
   const double size = in.scale.length, dt = in.scale.dt;
@@ -104,7 +104,7 @@ Model free_spin(ModelDraw& in) {
 
 // Hung up by a joint through `point` of the body: a ball joint in space, a hinge in the plane or in
 // space about the horizontal y axis.
-Model hung(ModelDraw& in, bool top) {
+Model hung_model(ModelDraw& in, bool top) {
   Random& kind = in.kind;
   const Space space = top || kind.chance(0.5) ? Space::spatial : Space::planar;
   Model model;
@@ -155,9 +155,10 @@ Model hung(ModelDraw& in, bool top) {
 
 std::vector<ModelType> rotating_models() {
   return {
-      {"free spin", "a body of three different moments spins freely", free_spin},
-      {"pendulum", "a body swings on a hinge", [](ModelDraw& in) { return hung(in, false); }},
-      {"top", "a heavy top spins on a ball joint", [](ModelDraw& in) { return hung(in, true); }}};
+      {"free spin", "a body of three different moments spins freely", free_spin_model},
+      {"pendulum", "a body swings on a hinge", [](ModelDraw& in) { return hung_model(in, false); }},
+      {"top", "a heavy top spins on a ball joint",
+       [](ModelDraw& in) { return hung_model(in, true); }}};
 }
 
 }  // namespace manyworlds::invariants

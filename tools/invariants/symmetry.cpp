@@ -10,7 +10,7 @@ namespace {
 
 using scenes::kPi;
 
-Material draw_material(Random& random) {
+Material draw_symmetric_material(Random& random) {
   const double restitution = random.chance(0.5) ? 0 : random.uniform(0, 1);
   const double friction = random.chance(0.25) ? 0 : random.uniform(0, 2);
   return {friction, restitution};
@@ -78,7 +78,7 @@ Body draw_floor(Random& random, Space space, const Scale& scale, const Material&
 Drawn flat_drop(Space space, Random& kind, Random& state, const Scale& scale) {
   Drawn out;
   out.scene = scene_of(space, scale);
-  const Material material = draw_material(kind);
+  const Material material = draw_symmetric_material(kind);
   double under = 0;
   Shape shape = draw_symmetric(kind, space, scale.length, under);
   shape.material = material;
@@ -106,7 +106,7 @@ Drawn flat_drop(Space space, Random& kind, Random& state, const Scale& scale) {
 Drawn rack(Space space, Random& kind, Random& state, const Scale& scale) {
   Drawn out;
   out.scene = free_scene(space, scale);
-  const Material material = draw_material(kind);
+  const Material material = draw_symmetric_material(kind);
   const double radius = 0.5 * scale.length;
   const double gap = kind.chance(0.5) ? 0 : scale.length * kind.log_uniform(1e-4, 0.1);
   const int rows = kind.integer(2, 4);
@@ -149,7 +149,7 @@ Drawn images(Space space, bool mirror, Random& kind, Random& state, const Scale&
   Drawn out;
   const bool falls = kind.chance(0.5);
   out.scene = falls ? scene_of(space, scale) : free_scene(space, scale);
-  const Material material = draw_material(kind);
+  const Material material = draw_symmetric_material(kind);
   if (falls) out.scene.add(draw_floor(kind, space, scale, material));
   Image image;
   image.mirror = mirror;

@@ -50,7 +50,7 @@ Scene swinging_rods() {
   }
   return scene;
 }
-double angle_from_down(const Batch& batch, int body) {
+double tilt_from_down(const Batch& batch, int body) {
   const Vec3 along = rotation(batch, 0, body) * Vec3::UnitX();
   return std::atan2(along.x(), -along.z());
 }
@@ -181,8 +181,8 @@ std::vector<Case> robot_cases() {
                           "larger of the two angle errors at 2 s", "rad", 1e-2, 2);
   angles.scene = swinging_rods;
   angles.error = [](const Batch& b, double) {
-    return std::max(turn(angle_from_down(b, 0) + 0.0827583068205708),
-                    turn(angle_from_down(b, 1) - 0.407362074911907));
+    return std::max(turn(tilt_from_down(b, 0) + 0.0827583068205708),
+                    turn(tilt_from_down(b, 1) - 0.407362074911907));
   };
   out.push_back(angles);
   Case energy = of_robots("A24", "double pendulum in joint coordinates", "largest energy error",

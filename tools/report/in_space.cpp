@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kHalfDepth = 0.5;  // m; so that kg/m^2 and kg/m^3 weigh boxes the same
 
-std::optional<Geometry> in_space(const Geometry& geometry) {
+std::optional<Geometry> geometry_in_space(const Geometry& geometry) {
   if (const auto* circle = std::get_if<Circle>(&geometry)) return Sphere{circle->radius};
   if (const auto* half = std::get_if<HalfPlane>(&geometry)) {
     return Plane{Vec3(half->normal.x(), half->normal.y(), 0), half->offset};
@@ -30,7 +30,7 @@ std::optional<Scene> in_space(const Scene& planar) {
   for (Body& body : scene.bodies) {
     if (body.mass_properties) return std::nullopt;
     for (Shape& shape : body.shapes) {
-      const auto geometry = in_space(shape.geometry);
+      const auto geometry = geometry_in_space(shape.geometry);
       if (!geometry) return std::nullopt;
       shape.geometry = *geometry;
     }

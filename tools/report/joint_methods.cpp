@@ -20,7 +20,7 @@ struct Swing {
   int lost = 0;               // worlds
 };
 
-Swing swing(double load, JointMethod method, int substeps, bool quick) {
+Swing swing_of(double load, JointMethod method, int substeps, bool quick) {
   Scene scene = swung_chain(load);
   scene.options.joint.method = method, scene.options.substeps = substeps;
   BatchOptions options;
@@ -52,11 +52,11 @@ Swing swing(double load, JointMethod method, int substeps, bool quick) {
 std::vector<WorthRow> compare_joint_methods(bool quick) {
   std::vector<WorthRow> out;
   for (const double load : {1.0, 10.0, 100.0, 1000.0}) {
-    const Swing usual = swing(load, JointMethod::sweep, 4, quick);
+    const Swing usual = swing_of(load, JointMethod::sweep, 4, quick);
     for (const JointMethod method : {JointMethod::sweep, JointMethod::tree}) {
       for (const int substeps : {1, 2, 4, 8, 12}) {
         const bool same = method == JointMethod::sweep && substeps == 4;
-        const Swing s = same ? usual : swing(load, method, substeps, quick);
+        const Swing s = same ? usual : swing_of(load, method, substeps, quick);
         WorthRow row;
         row.scene = fmt::format(
             "ten links, the last with {:g} times the mass of the others, swept in 4 substeps",

@@ -40,7 +40,7 @@ std::vector<double> moving_parts(const Batch& batch) {
   return out;
 }
 
-WorthRow measure(const Variant& v, bool quick) {
+WorthRow measure_worth(const Variant& v, bool quick) {
   Batch plain(compile(v.plain.scene, v.plain.plan), v.plain.batch);
   Batch changed(compile(v.changed.scene, v.changed.plan), v.changed.batch);
   plain.step(v.settle), changed.step(v.settle);
@@ -76,7 +76,7 @@ Setup plain_setup(const Scene& scene, int worlds) {
 }
 
 // Stages and rows that the plan left out, switched on again.
-void add_kept(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
+void add_kept_variant(const std::string& name, const Setup& plain, std::vector<Variant>& out) {
   const Plan plan = compile(plain.scene);
   std::vector<Feature> missing;
   for (int i = 0; i < kFeatureCount; ++i) {
@@ -228,7 +228,7 @@ std::vector<WorthRow> run_worth(const WorthOptions& options,
         names.empty() ? entry.standard : std::count(names.begin(), names.end(), entry.name) > 0;
     if (!wanted) continue;
     const Setup plain = plain_setup(entry.make(), options.quick ? 128 : 512);
-    add_kept(entry.name, plain, variants);
+    add_kept_variant(entry.name, plain, variants);
     add_choices(entry.name, plain, variants);
     add_enlarged(entry.name, plain, variants);
     add_integrators(entry.name, plain, variants);
@@ -246,7 +246,7 @@ std::vector<WorthRow> run_worth(const WorthOptions& options,
     tell(v.scene + ' ' + v.name,
          static_cast<double>(out.size()) / static_cast<double>(variants.size()));
     try {
-      out.push_back(measure(v, options.quick));
+      out.push_back(measure_worth(v, options.quick));
     } catch (const tools::Interrupted&) {
       break;
     }

@@ -13,19 +13,19 @@
 namespace manyworlds::report {
 namespace {
 
-constexpr double kFriction = 0.6;
+constexpr double kFrictionOfSizes = 0.6;
 
-Scene grounded() {
+Scene grounded_scene() {
   Scene scene = empty(Space::spatial, 10);
-  scene.add(ground(Space::spatial, kFriction));
+  scene.add(ground(Space::spatial, kFrictionOfSizes));
   return scene;
 }
 Body block(const Vec3& half, const Vec3& at) {
-  Body body = with_shape(Box{half}, at, kFriction);
+  Body body = with_shape(Box{half}, at, kFrictionOfSizes);
   body.jitter.position = 1e-3 * Vec3(half.x(), half.y(), 0);
   return body;
 }
-Body cube(double size, const Vec3& at) { return block(Vec3::Constant(size / 2), at); }
+Body cube_of(double size, const Vec3& at) { return block(Vec3::Constant(size / 2), at); }
 
 std::string size_text(double size) {
   return size >= 1      ? fmt::format("{:g} m", size)
@@ -44,8 +44,8 @@ Trial press(double size, double weights) {
                   "cube pressed on the ground by a multiple of its weight",
                   "displacement, in cube sizes", "", much ? 0.5 : 0.02, 10);
   t.scene = [size] {
-    Scene scene = grounded();
-    scene.add(cube(size, {0, 0, size / 2}));
+    Scene scene = grounded_scene();
+    scene.add(cube_of(size, {0, 0, size / 2}));
     return scene;
   };
   const double force = weights * 1000 * size * size * size * 10;
@@ -71,7 +71,7 @@ double asleep_then(const Plan& plan, BatchOptions options, double seconds,
 }
 
 Scene column(int count, const Vec3& half) {
-  Scene scene = grounded();
+  Scene scene = grounded_scene();
   for (int i = 0; i < count; ++i) scene.add(block(half, {0, 0, (2 * i + 1) * half.z()}));
   return scene;
 }
@@ -107,14 +107,14 @@ Trial grip(double force) {
                   "slip", "m", 1e-4, 10);
   t.scene = [] {
     Scene scene = empty(Space::spatial, 10);
-    Body wall = with_shape(Box{{0.05, 0.2, 0.2}}, {-0.05, 0, 0}, kFriction);
+    Body wall = with_shape(Box{{0.05, 0.2, 0.2}}, {-0.05, 0, 0}, kFrictionOfSizes);
     wall.motion = Motion::fixed;
     scene.add(wall);
-    Body box = with_shape(Box{Vec3::Constant(0.03)}, {0.03, 0, 0}, kFriction);
+    Body box = with_shape(Box{Vec3::Constant(0.03)}, {0.03, 0, 0}, kFrictionOfSizes);
     box.shapes[0].density = 1 / std::pow(0.06, 3);
     box.jitter.position = {0, 1e-4, 1e-4};
     scene.add(box);
-    Body finger = with_shape(Box{Vec3::Constant(0.01)}, {0.07, 0, 0}, kFriction);
+    Body finger = with_shape(Box{Vec3::Constant(0.01)}, {0.07, 0, 0}, kFrictionOfSizes);
     finger.shapes[0].density = 0.1 / std::pow(0.02, 3);
     scene.add(finger);
     return scene;
@@ -131,11 +131,11 @@ Trial grip(double force) {
 // apart however they are turned and moved.
 Scene mixed_drop() {
   constexpr double kApart = 0.17;  // m; they are up to 0.142 long, and are moved by 0.01
-  Scene scene = grounded();
+  Scene scene = grounded_scene();
   for (const double side : {-1.0, 1.0}) {
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
       Body wall = with_shape(Box{{way.x() != 0 ? 0.1 : 0.5, way.y() != 0 ? 0.1 : 0.5, 1}},
-                             side * 0.4 * way + Vec3(0, 0, 1), kFriction);
+                             side * 0.4 * way + Vec3(0, 0, 1), kFrictionOfSizes);
       wall.motion = Motion::fixed;
       scene.add(wall);
     }
@@ -153,7 +153,7 @@ Scene mixed_drop() {
     Body body = with_shape(i % 3 == 0   ? Geometry(lump)
                            : i % 3 == 1 ? Geometry(Cylinder{0.05, 0.05})
                                         : Geometry(Capsule{0.03, 0.02}),
-                           at, kFriction);
+                           at, kFrictionOfSizes);
     body.jitter.position = Vec3::Constant(0.01), body.jitter.any_orientation = true;
     scene.add(body);
   }
@@ -233,7 +233,7 @@ Trial dominoes() {
                   "relative difference of the wave's speed to that at a quarter of the step", "",
                   0.05, 4);
   t.scene = [] {
-    Scene scene = grounded();
+    Scene scene = grounded_scene();
     for (int i = 0; i < kDominoes; ++i) {
       Body domino = block({0.00375, 0.012, 0.024}, {0.02 * i, 0, 0.024});
       if (i == 0) domino.angular_velocity = {0, 4, 0}, domino.linear_velocity = {0.096, 0, 0.015};
