@@ -13,11 +13,7 @@
 namespace manyworlds::test {
 namespace {
 
-BatchOptions observing_loads(const Table& table, int worlds = 1) {
-  BatchOptions options = options_of(table, worlds);
-  options.observe.what = {Observer::joints, Observer::joint_loads, Observer::contacts};
-  return options;
-}
+const std::vector<Observer> kLoads = {Observer::joints, Observer::joint_loads, Observer::contacts};
 
 Vec3 of_joint(const Batch& batch, Observed what, JointId joint) {
   const Numbers v = numbers(batch, what);
@@ -43,7 +39,7 @@ TEST_CASE("a pendulum in joint coordinates tells what its hinge carries", "[fast
     for (const Table& table : all_tables()) {
       INFO(name(table) << ", " << to_string(integrator));
       const double slack = pick(table, 1e-3, 1e-5) * weight;
-      Batch batch(compile(scene), observing_loads(table));
+      Batch batch(compile(scene), observing(table, kLoads));
       put_angle(batch, kPi / 2);  // hanging at rest
       batch.step(3);
       CHECK((force_on_b(batch) - Vec3(0, 0, weight)).norm() < slack);
@@ -96,7 +92,7 @@ TEST_CASE("joints in series and fixed ones carry what hangs on them", "[fast][ne
   for (const Table& table : all_tables()) {
     INFO(name(table));
     const double slack = pick(table, 1e-3, 1e-9);
-    Batch batch(compile(scene), observing_loads(table));
+    Batch batch(compile(scene), observing(table, kLoads));
     batch.step();
     for (const double speed : of(batch, Field::generalized_velocity)) {
       CHECK(speed == Approx(0).margin(pick(table, 1e-5, 1e-12)));
@@ -113,7 +109,7 @@ TEST_CASE("joints in series and fixed ones carry what hangs on them", "[fast][ne
 TEST_CASE("springs, dampers, limits and motors act within their joint, rotors in front of it",
           "[fast][newton][joint]") {
   const auto torque = [](const Scene& scene, const Table& table, double q, double v) {
-    Batch batch(compile(scene), observing_loads(table));
+    Batch batch(compile(scene), observing(table, kLoads));
     put_angle(batch, q, v);
     batch.step();
     // Of the step itself, dampers as it took them.
@@ -162,7 +158,7 @@ TEST_CASE("what contacts carry, joints do not", "[fast][newton][joint]") {
     scene.joints[0].dynamics.damping = 0.5;
     for (const Table& table : widest_tables()) {
       INFO(name(table) << ", " << to_string(integrator));
-      Batch batch(compile(scene), observing_loads(table));
+      Batch batch(compile(scene), observing(table, kLoads));
       batch.step(1000);
       const auto contacts = batch.step_contacts(0);
       REQUIRE(contacts.size() == 1);
@@ -187,7 +183,7 @@ TEST_CASE("joints in joint coordinates tell where they are, in their order",
   for (const Table& table : all_tables()) {
     INFO(name(table));
     const double slack = pick(table, 1e-5, 1e-12);
-    Batch batch(plan, observing_loads(table));
+    Batch batch(plan, observing(table, kLoads));
     batch.look();
     CHECK(numbers(batch, Observed::joint_position)[0] == approx(0.5, slack));
     Numbers q = of(batch, Field::generalized_position), v = of(batch, Field::generalized_velocity);
@@ -221,7 +217,7 @@ TEST_CASE("cone and twist of a ball change by their speeds", "[fast][newton][joi
   const Quat turned(Eigen::AngleAxisd(0.9, Vec3(1, -0.5, 0.3).normalized()));
   for (const Table& table : widest_tables()) {
     if (table.precision != Precision::f64) continue;
-    Batch batch(compile(scene), observing_loads(table));
+    Batch batch(compile(scene), observing(table, kLoads));
     put(batch, Field::generalized_position, {turned.w(), turned.x(), turned.y(), turned.z()});
     put(batch, Field::generalized_velocity, {1, -2, 0.7});
     batch.look();
@@ -245,7 +241,7 @@ TEST_CASE("what is observed of joints has the bits of its world, and changes non
     Numbers first[2];  // by precision
     for (const Table& table : all_tables()) {
       INFO(name(table) << ", " << to_string(integrator));
-      Batch plain(plan, options_of(table, kWorlds)), seen(plan, observing_loads(table, kWorlds));
+      Batch plain(plan, options_of(table, kWorlds)), seen(plan, observing(table, kLoads, kWorlds));
       plain.step(60);
       seen.step(40);
       for (int i = 0; i < 20; ++i) seen.step();
@@ -259,7 +255,7 @@ TEST_CASE("what is observed of joints has the bits of its world, and changes non
       CHECK(force_on_b(seen).norm() > 0);
       // In another lane, with others beside it.
       const Snapshot saved = seen.save();
-      Batch one(plan, observing_loads(table));
+      Batch one(plan, observing(table, kLoads));
       seen.step(3);
       for (const int world : {0, 7, kWorlds - 1}) {
         one.restore(saved, world, 0);

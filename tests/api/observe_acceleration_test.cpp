@@ -5,17 +5,12 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/observed.hpp"
 #include "tests/support/tables.hpp"
 #include "tests/support/varied.hpp"
 
 namespace manyworlds::test {
 namespace {
-
-BatchOptions observing_acceleration(const Table& table, int worlds = 1) {
-  BatchOptions options = options_of(table, worlds);
-  options.observe.what = {Observer::acceleration};
-  return options;
-}
 
 Vec3 observed(const Batch& batch, Observed what, int row, int world = 0) {
   std::vector<double> v(batch.size(what) / static_cast<std::size_t>(batch.worlds()));
@@ -59,7 +54,7 @@ TEST_CASE("in free fall the acceleration is gravity and an accelerometer tells 0
     scene.bodies[0].gravity_scale = 0.5;
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(compile(scene), observing_acceleration(table));
+      Batch batch(compile(scene), observing(table, {Observer::acceleration}));
       for (int steps : {1, 3}) {
         batch.step(steps);
         CHECK(close(linear(batch, 0), -5 * up_of(space), pick(table, 1e-3, 1e-9)));
@@ -78,7 +73,7 @@ TEST_CASE("at rest an accelerometer tells g upwards, in the axes of the body", "
     scene.add(box);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(compile(scene), observing_acceleration(table));
+      Batch batch(compile(scene), observing(table, {Observer::acceleration}));
       batch.step(300);
       CHECK(close(linear(batch, 0), Vec3::Zero(), 0.02));
       CHECK(close(angular(batch, 0), Vec3::Zero(), 0.05));
@@ -97,7 +92,7 @@ TEST_CASE("a constant force and a torque give F / m and T / I", "[fast][observe]
     const double mass = 2, inertia = 2.0 / 6;  // of a square or a cube with sides of 1 m
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(compile(scene), observing_acceleration(table));
+      Batch batch(compile(scene), observing(table, {Observer::acceleration}));
       batch.add_force(0, BodyId(0), {3, -4, 0});
       batch.add_torque(0, BodyId(0), {0, 0, 0.5});
       batch.step(4);
@@ -117,7 +112,8 @@ TEST_CASE("the acceleration is the change of velocity in the last step, impacts 
     const Plan plan = compile(varied_crowd(space));
     for (const Table& table : widest_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing_acceleration(table, 5)), twin(plan, options_of(table, 5));
+      Batch batch(plan, observing(table, {Observer::acceleration}, 5)),
+          twin(plan, options_of(table, 5));
       const double per_step = 1 / plan.scene().options.dt, near = pick(table, 0.02, 1e-6);
       double hardest = 0;
       for (int call = 0; call < 20; ++call) {
@@ -166,7 +162,7 @@ TEST_CASE("what does not move has no acceleration", "[fast][observe]") {
     scene.bodies[3].motion = Motion::kinematic;
     for (const Table& table : widest_tables()) {
       INFO(name(table));
-      BatchOptions options = observing_acceleration(table, 3);
+      BatchOptions options = observing(table, {Observer::acceleration}, 3);
       options.sleep = true;
       Batch batch(compile(scene), options);
       const Vec3 zero = Vec3::Zero(), up = 10 * up_of(space);
@@ -205,7 +201,7 @@ TEST_CASE("the pull of an attractor is gravity, too", "[fast][observe]") {
   scene.attractors.push_back({.strength = 8});
   for (const Table& table : widest_tables()) {
     INFO(name(table));
-    Batch batch(compile(scene), observing_acceleration(table));
+    Batch batch(compile(scene), observing(table, {Observer::acceleration}));
     batch.step(40);
     CHECK(linear(batch, 0).norm() == Approx(2).epsilon(0.01));
     CHECK(close(proper(batch, 0), Vec3::Zero(), 0.01));

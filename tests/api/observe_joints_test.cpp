@@ -12,11 +12,7 @@
 namespace manyworlds::test {
 namespace {
 
-BatchOptions observing_joints(const Table& table, int worlds = 1) {
-  BatchOptions options = options_of(table, worlds);
-  options.observe.what = {Observer::joints, Observer::joint_loads};
-  return options;
-}
+const std::vector<Observer> kJoints = {Observer::joints, Observer::joint_loads};
 
 // Of one joint, in space; torques of the plane are about z.
 Vec3 force_on_second(const Batch& batch, std::size_t joint = 0) {
@@ -47,7 +43,7 @@ TEST_CASE("a hinge tells its angle, its speed and what it carries", "[fast][obse
     CHECK(plan.coordinates() == 1);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing_joints(table));
+      Batch batch(plan, observing(table, kJoints));
       const Vec3 axis = axis_of(space);
       for (int i = 0; i < 5; ++i) {
         batch.step();
@@ -79,7 +75,7 @@ TEST_CASE("a hinge that turns steadily pulls its body to its axis", "[fast][obse
     const Plan plan = compile(scene);
     for (const Table& table : widest_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing_joints(table));
+      Batch batch(plan, observing(table, kJoints));
       batch.step(480);  // 6 rad: within (-pi, pi] it is 6 - 2 pi
       CHECK(numbers(batch, Observed::joint_speed)[0] == Approx(3).epsilon(1e-3));
       CHECK(numbers(batch, Observed::joint_position)[0] == approx(6 - 2 * kPi, 0.02));
@@ -116,7 +112,7 @@ TEST_CASE("sliders, wheels, springs and ropes tell where they are", "[fast][obse
     CHECK(plan.first_coordinate(JointId(3)) == 4);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing_joints(table));
+      Batch batch(plan, observing(table, kJoints));
       batch.step(20);  // the rope's weights still fly
       const auto speed = numbers(batch, Observed::joint_speed);
       CHECK(speed[0] == approx(velocity(batch, 0, 0).dot(up), pick(table, 1e-6, 1e-12)));
@@ -148,7 +144,7 @@ TEST_CASE("a ball joint tells its cone and its twist", "[fast][observe][joint]")
   scene.bodies[0].position = scene.bodies[0].rotation * Vec3(0, 0, -1);
   for (const Table& table : all_tables()) {
     INFO(name(table));
-    Batch batch(compile(scene), observing_joints(table));
+    Batch batch(compile(scene), observing(table, kJoints));
     batch.look();
     const auto angles = numbers(batch, Observed::joint_position);
     REQUIRE(angles.size() == 2);
@@ -168,7 +164,7 @@ TEST_CASE("cone and twist of a ball joint change by their speeds", "[fast][obser
     scene.at(ball).rotation = Quat(Eigen::AngleAxisd(cone, Vec3(0.6, 0.8, 0))) *
                               Quat(Eigen::AngleAxisd(-0.4, Vec3::UnitZ()));
     if (!has_table(double_table())) return;
-    Batch batch(compile(scene), observing_joints(double_table()));
+    Batch batch(compile(scene), observing(double_table(), kJoints));
     batch.look();
     const auto before = numbers(batch, Observed::joint_position),
                speed = numbers(batch, Observed::joint_speed);
@@ -190,7 +186,7 @@ TEST_CASE("a fixed joint carries what hangs on it", "[fast][observe][joint]") {
     CHECK(plan.coordinates() == 0);
     for (const Table& table : all_tables()) {
       INFO(name(table));
-      Batch batch(plan, observing_joints(table, 3));
+      Batch batch(plan, observing(table, kJoints, 3));
       batch.step(300);
       const Vec3 weight = -2 * 10 * up_of(space);
       CHECK((force_on_second(batch) + weight).norm() < 1e-3);
@@ -225,7 +221,7 @@ TEST_CASE("joints are seen at the state after a reset, without a step", "[fast][
     scene.add(uniform_rod(Space::planar, 1, 1, {0.5, 0, 0}));
     scene.bodies[0].angular_velocity.z() = 2;
     scene.add(joint_at(scene, {}, BodyId(0), at(Vec3::Zero()), HingeJoint{}));
-    Batch batch(compile(scene), observing_joints(table, 2));
+    Batch batch(compile(scene), observing(table, kJoints, 2));
     batch.step(30);
     REQUIRE(numbers(batch, Observed::joint_position)[0] > 0.2);
     batch.reset(std::vector<std::uint8_t>{0, 1});

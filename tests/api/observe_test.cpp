@@ -8,6 +8,7 @@
 #include "manyworlds/scenes.hpp"
 #include "tests/support/approx.hpp"
 #include "tests/support/crowd.hpp"
+#include "tests/support/observed.hpp"
 #include "tests/support/tables.hpp"
 
 namespace manyworlds::test {
@@ -15,12 +16,6 @@ namespace {
 
 const std::vector<Observer> kEverything = {Observer::contacts, Observer::touching,
                                            Observer::penetration, Observer::motion};
-
-BatchOptions observing(const Table& table, std::vector<Observer> what, int worlds = 1) {
-  BatchOptions options = options_of(table, worlds);
-  options.observe.what = std::move(what);
-  return options;
-}
 
 double number(const Batch& batch, Observed what, int world = 0) {
   double x = 0;
