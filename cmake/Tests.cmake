@@ -62,7 +62,8 @@ function(mw_test_program target)
   endif()
   mw_unity(${target})
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    # Of optionals that are moved, whose header does not count as a system's once it is precompiled.
+    # GCC 12 wrongly takes an optional that is moved for uninitialised: precompiled, <optional> is no
+    # system header.
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
   endif()
   set(cost 0)
