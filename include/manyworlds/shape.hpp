@@ -48,8 +48,8 @@ struct Cylinder {
 struct Ellipsoid {            // spatial, centred on the shape frame
   Vec3 radii{0.5, 0.4, 0.3};  // m, along its axes
 };
-// Spatial, a convex polyhedron: the convex hull of 4 to 64 vertices. make_hull (hull.hpp) computes
-// the vertices from a point cloud. Coplanar faces are merged.
+// Spatial, a convex polyhedron: the convex hull of 4 to 8192 vertices. make_hull (hull.hpp)
+// computes the vertices from a point cloud. Coplanar faces are merged.
 struct Hull {
   std::vector<Vec3> vertices = {};  // m, shape frame, in any order
 };

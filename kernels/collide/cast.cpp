@@ -79,15 +79,16 @@ void load_any(const Constants& t, const Real* hulls, kernels::ShapeKind kind, co
 
 // A point inside, about which a shape is made smaller. The middle of a hull's bounds may be outside
 // of it, the mean of its corners is not.
-Vec3 inside_of(const ConvexShape& s, const Real* base, const std::int32_t* at) {
+Vec3 inside_of(const ConvexShape& s) {
   if (s.kind != kernels::ShapeKind::hull) return s.p;
   alignas(64) Real counts[kLanes];
-  for (int l = 0; l < kLanes; ++l) counts[l] = hull_row(base, at[l]).vertices;
+  for (int l = 0; l < kLanes; ++l) counts[l] = static_cast<Real>(s.hull.corners[l]);
   const Float count = Float::load(counts);
   Vec3 sum = zero_of<Vec3>();
-  for (int i = 0; i < s.vertices; ++i) {
+  for (int i = 0; i < s.hull.most_corners; ++i) {
     // Lanes with fewer corners repeat the last one.
-    sum = select(Float(static_cast<Real>(i)) < count, sum + s.vertex[i], sum);
+    const Vec3 corner = placed_corner(s, corner_of(s.hull, i));
+    sum = select(Float(static_cast<Real>(i)) < count, sum + corner, sum);
   }
   return fma(sum, Float(Real(1)) / max(count, Real(1)), s.p);
 }
@@ -114,7 +115,8 @@ Gap gap_of(const Constants& t, const ConvexShape& wall, ConvexShape& shape, Floa
            Mask active) {
   if (wall.kind == kernels::ShapeKind::plane) {
     const Vec3 n = wall.face_normal;
-    return {n, dot(n, shape.p - wall.p) + extent_along(shape, n).low - shape.radius};
+    return {n, dot(n, shape.p - wall.p) + extent_along(shape, n, mask_from_bits(kAllLanes)).low -
+                   shape.radius};
   }
   shape.margin = far + wall.radius + shape.radius;
   ConvexAxis axis;
@@ -149,7 +151,8 @@ Float free_share(const Sweep& s, const ConvexShape& wall, const ConvexShape& sha
   if (any(touches)) {
     place(shape, m, centre, kPoint, zero, now);
     const Gap point = gap_of(s.t, wall, now, far, touches);
-    const Float low_end = extent_along(now, point.normal).low - now.radius;
+    const Float low_end =
+        extent_along(now, point.normal, mask_from_bits(kAllLanes)).low - now.radius;
     const Vec3 inside =
         m.from + rotate(rotate_by({one, zero, zero, zero}, -m.ahead), centre - m.from);
     const Float part = dot(point.normal, inside - now.p) - low_end;  // of the reach
@@ -261,7 +264,7 @@ void for_each_shape(const Constants& t, const Work& w, int body, Float half_thic
     if (!touches(i)) continue;
     for (int l = 0; l < kLanes; ++l) at[l] = w.pose_base[l] + t.collider[i].row;
     load_any(t, t.hulls, t.collider[i].kind, w.pose_rows, at, shape);
-    const Vec3 centre = inside_of(shape, w.pose_rows, at);
+    const Vec3 centre = inside_of(shape);
     if (t.body[body].jointed) load_core(t, centre, half_thickness * kCore, shape);
     visit(shape, centre);
   }

@@ -158,6 +158,10 @@ inline void collect_points(const FacePair& p, Clipped& clipped) {
   cover_corners(p.outline, incident, tilt, p.other.face, slack, clipped);
 }
 
+// Codes of hulls' faces, two of which have at most 24 bits, begin beyond those of other manifolds.
+// Tiles have one face.
+inline constexpr Real kHullCode = 1e5, kHullOnTileCode = 256;
+
 // Clips one shape's feature against the face of the other, in the lanes of `use`: those in which
 // the face is one of `ref`. Returns the lanes in which points were found.
 inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const ConvexShape& inc,
@@ -189,7 +193,13 @@ inline Mask clip_on_face(const Constants& t, const ConvexShape& ref, const Conve
   m.tangent = select(good, of_a.u, m.tangent);
   if (flip) put_places(of_a.u, of_a.v, good, m);
   const Float first = flip ? p.other.code : p.face.code, second = flip ? p.face.code : p.other.code;
-  m.code = select(good, fma(first, Real(128), second), m.code);
+  using K = kernels::ShapeKind;
+  const bool hull = ref.kind == K::hull || inc.kind == K::hull;
+  const bool tile = ref.kind == K::tile || inc.kind == K::tile;
+  const Float code =
+      hull ? fma(first, Real(4096), second) + Float(tile ? kHullOnTileCode : kHullCode)
+           : fma(first, Real(128), second);
+  m.code = select(good, code, m.code);
   m.match_distance2 =
       select(good, match_distance2(sqrt(p.extent2) * Float(Real(0.7))), m.match_distance2);
   return good;

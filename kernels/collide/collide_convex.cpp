@@ -104,7 +104,7 @@ void guard_edges(const Constants& t, const ConvexShape& a, const ConvexShape& b,
 // point that is deepest along that may be beside the triangle, and nothing touches there.
 void keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis& axis) {
   const Vec3 n = tile.normal;
-  const Vec3 lowest = support(b, -n) + d;
+  const Vec3 lowest = support(b, -n, mask_from_bits(kAllLanes)) + d;
   const Float separation = dot(n, lowest - tile.vertex[0]);
   // A shape below the triangle is not apart from it but inside the solid.
   const Mask below = is_below(tile, d), other = below | !has_normal(tile, axis.normal);
@@ -116,7 +116,6 @@ void keep_to_surface(const Tile& tile, const ConvexShape& b, Vec3 d, ConvexAxis&
   const Mask other_face = axis.face_of_b & (below | !has_normal(tile, axis.face_normal));
   axis.face_normal = select(other_face, n, axis.face_normal);
   axis.face_separation = select(other_face, separation, axis.face_separation);
-  axis.face = select(other_face, Float(Real(0)), axis.face);
   axis.face_of_b = axis.face_of_b & !other_face;
   axis.touch = (!other) | is_over(tile, lowest, Real(0)) | below;
 }
@@ -170,8 +169,8 @@ void collide_plane_convex(const Constants& t, const PlanePose& a, const ConvexSh
   for (int i = 0; i < f.count; ++i) {
     points.add(outline.corner[i].x, outline.corner[i].y, outline.corner[i].z);
   }
-  add_deepest(outline, false, frame.local(support(b, -a.normal)), mask_from_bits(kAllLanes),
-              Float(t.face_bias) * Float(kClearly), points);
+  add_deepest(outline, false, frame.local(support(b, -a.normal, mask_from_bits(kAllLanes))),
+              mask_from_bits(kAllLanes), Float(t.face_bias) * Float(kClearly), points);
   KeptPoints kept;
   keep_four(points, Float(Real(1e4)), Float(t.margin * kLevel), outline.extent2, kept);
   m.normal = a.normal;
@@ -217,7 +216,7 @@ void cylinder_sphere(const ConvexShape& a, Vec3 d, Vec3& normal, Float& separati
 
 void collide_plane_point(const PlanePose& a, const ConvexShape& b, Manifold<Isotropic, 1>& m) {
   const Float zero(Real(0));
-  const Vec3 lowest = support(b, -a.normal);
+  const Vec3 lowest = support(b, -a.normal, mask_from_bits(kAllLanes));
   m.normal = a.normal;
   m.tangent = a.tangent;
   m.separation[0] = dot(a.normal, b.p) - a.offset + dot(a.normal, lowest);

@@ -88,7 +88,7 @@ void load_tile(const Real* base, const std::int32_t* offset, const ConvexShape& 
   const Float around = b.radius + Float::load(pad);
   for (int k = 0; k < 2; ++k) {
     const Vec3 axis = k == 0 ? frame.r.x : frame.r.y;
-    const Extent e = extent_along(b, axis);
+    const Extent e = extent_along(b, axis, mask_from_bits(kAllLanes));
     const Float place = dot(axis, d);
     (place + e.low - around).store(low[k]), (place + e.high + around).store(high[k]);
   }

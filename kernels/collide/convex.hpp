@@ -9,29 +9,30 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// `hulls`: where corners are; nullptr: behind the pose row, as those of a fixed shape.
+// `hulls`: where tables of hulls are; nullptr: behind the pose row, as those of a fixed shape.
 void load_convex(const Real* hulls, kernels::ShapeKind kind, const Real* base,
                  const std::int32_t* offset, ConvexShape& s);
 
-// Reach of the core along a unit direction, from p.
-Extent extent_along(const ConvexShape& s, Vec3 n);
+// Reach of the core along a unit direction, from p. `lanes`: where the answer counts.
+Extent extent_along(const ConvexShape& s, Vec3 n, Mask lanes);
 // The point of the core that reaches farthest along n, from p.
-Vec3 support(const ConvexShape& s, Vec3 n);
+Vec3 support(const ConvexShape& s, Vec3 n, Mask lanes);
 
 // What lies farthest out along n.
 // `tie`: how much better a later face has to be, so that rounding decides nothing.
 void feature_along(const ConvexShape& s, Vec3 n, Real tie, Feature& f);
 
-// What convex_axes.cpp finds: a unit normal from A to B, the gap between the cores along it, and a
-// point of each core that is nearest there.
+// What convex_axes.cpp and hull_axes.cpp find: a unit normal from A to B, the gap between the cores
+// along it, and a point of each core that is nearest there.
 struct ConvexAxis {
   Vec3 normal;
   Float separation;
   Vec3 on_a, on_b;  // from A's p
   Mask touch;       // lanes in which they touch there: not beside a tile (collide_convex.cpp)
-  // The best of the faces' normals: the face's index and whether it is one of B.
+  // The best of the faces' normals, of hulls of those that look along the normal, and whether it is
+  // one of B.
   Vec3 face_normal;  // from A to B
-  Float face_separation, face;
+  Float face_separation;
   Mask face_of_b;
   Mask near;  // elsewhere the bounds' margins do not meet, and nothing else is of use
 };

@@ -23,15 +23,27 @@ void load_convex(const Real* hulls, kernels::ShapeKind kind, const Real* base,
   visit_kind(SpatialShapes{}, kind, [&]<class Pose>() { Pose::load(hulls, base, offset, s); });
 }
 
-Extent extent_along(const ConvexShape& s, Vec3 n) {
+Extent extent_along(const ConvexShape& s, Vec3 n, Mask lanes) {
   Extent out{};
-  ask_kind(s.kind, [&]<class Pose>() { out = Pose::extent(s, n); });
+  ask_kind(s.kind, [&]<class Pose>() {
+    if constexpr (Pose::kKind == kernels::ShapeKind::hull) {
+      out = Pose::extent(s, n, lanes);
+    } else {
+      out = Pose::extent(s, n);
+    }
+  });
   return out;
 }
 
-Vec3 support(const ConvexShape& s, Vec3 n) {
+Vec3 support(const ConvexShape& s, Vec3 n, Mask lanes) {
   Vec3 out{};
-  ask_kind(s.kind, [&]<class Pose>() { out = Pose::support(s, n); });
+  ask_kind(s.kind, [&]<class Pose>() {
+    if constexpr (Pose::kKind == kernels::ShapeKind::hull) {
+      out = Pose::support(s, n, lanes);
+    } else {
+      out = Pose::support(s, n);
+    }
+  });
   return out;
 }
 

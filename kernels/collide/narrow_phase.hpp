@@ -6,7 +6,7 @@
 #include "kernels/collide/box_box.hpp"
 #include "kernels/collide/box_capsule.hpp"
 #include "kernels/collide/box_round.hpp"
-#include "kernels/collide/convex.hpp"
+#include "kernels/collide/convex_list.hpp"
 #include "kernels/collide/link_pairs.hpp"
 #include "kernels/collide/polygon_pairs.hpp"
 #include "kernels/collide/rectangle_rectangle.hpp"
@@ -16,25 +16,6 @@
 #include "kernels/work/stages.hpp"
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
-
-// Offsets of the pose rows of both shapes of a block; of a fixed A in the rows of fixed shapes.
-struct PoseOffsets {
-  alignas(64) std::int32_t a[kLanes], b[kLanes];
-};
-
-template <bool kPair>
-MW_INLINE PoseOffsets pose_offsets(const Constants& t, const Work& w, const std::int32_t* code) {
-  PoseOffsets o;
-  const Ints shapes = Ints::load(code), base = Ints::load(w.pose_base);
-  (base + gather(t.collider_row, high_half(shapes))).store(o.b);
-  if constexpr (kPair) {
-    (base + gather(t.collider_row, low_half(shapes))).store(o.a);
-  } else {
-    constexpr auto kStride = static_cast<std::int32_t>(sizeof(*t.fixed) / sizeof(std::int32_t));
-    gather(&t.fixed->row, low_half(shapes) * Ints(kStride)).store(o.a);
-  }
-  return o;
-}
 
 // Planes are fixed and have no origin that anchors are measured from.
 template <class S, class Pose>
@@ -54,12 +35,6 @@ inline constexpr bool kIsBall =
 template <class Pair>
 inline constexpr bool kTurnsToTouch = !std::is_same_v<typename Pair::A, PlanePose> &&
                                       !(kIsBall<typename Pair::A> && kIsBall<typename Pair::B>);
-
-template <class S>
-MW_INLINE bool searches_touch(const Constants& t, const Work& w, const RowBuilder<S>& rows) {
-  const bool asked = w.recorder && !w.recorder->places;
-  return t.seams && rows.velocity && !asked;
-}
 
 // Not inlined, since it runs for few contacts.
 inline __attribute__((noinline)) Float axis_of_boxes(const Constants& t, const BoxPose& a,
@@ -145,121 +120,6 @@ void collide(const Constants& t, const Group& g, kernels::Scratch* scratch) {
     collide_list<S, Pair, false>(t, g, w, *list);
   } else if constexpr (!kOnlyFixed<Pair>) {
     collide_list<S, Pair, true>(t, g, w, *list);
-  }
-}
-
-// ---- pairs of the general method
-// -----------------------------------------------------------------
-
-// Whether the general method has a core with a radius around it.
-inline constexpr bool has_radius(kernels::ShapeKind kind) {
-  return kind == kernels::ShapeKind::sphere || kind == kernels::ShapeKind::capsule;
-}
-
-template <class S, int N>
-MW_INLINE void exchange_sides(Manifold<S, N>& m) {
-  m.normal = -m.normal;
-  for (int i = 0; i < N; ++i) {
-    const auto point = m.point_a[i];
-    m.point_a[i] = m.point_b[i];
-    m.point_b[i] = point;
-  }
-}
-
-template <int N>
-MW_INLINE void collide_tile(const Constants& t, const ConvexShape& a, const Tile& tile,
-                            const ConvexShape& b, Mask active, Manifold<Isotropic, N>& m) {
-  if constexpr (N == 1) {
-    if (b.kind == kernels::ShapeKind::sphere) return collide_tile_sphere(a, tile, b, m);
-    collide_convex_point(t, a, &tile, b, active, m);
-  } else {
-    collide_convex_pair(t, a, &tile, b, active, m);
-  }
-  m.code = fma(tile.code, Float(kTileCodes), m.code);
-}
-
-template <int N, bool kPair>
-void collide_convex_list(const Constants& t, const Group& g, Work& w) {
-  using kernels::ShapeKind;
-  const auto& pairs = t.pair_class[w.class_index];
-  const ShapeKind kind_a = shape_a(pairs.kind), kind_b = shape_b(pairs.kind);
-  const Real* base_a = kPair ? w.pose_rows : t.fixed_rows;
-  const CandidateList& list = w.candidates;
-  const bool exchanged = has_radius(kind_a);  // the method wants what is round as B
-  const RowBuilder<Isotropic> rows = row_builder<Isotropic>(t, w);
-  AddContact<Isotropic, N>* const add_contact = rows.template add<N>(kPair);
-  const bool search = !kPair && searches_touch(t, w, rows);
-  ConvexShape a, b;
-  for (int i = 0; i < list.count; ++i) {
-    if (list.mask[i] == 0) continue;  // its lanes had too many candidates
-    const std::int32_t* code = list.code + i * kLanes;
-    PoseOffsets o = pose_offsets<kPair>(t, w, code);
-    // Lanes without a candidate point at some fixed shape, of another kind perhaps: they look at
-    // that of a lane that has one.
-    const int candidate = __builtin_ctz(list.mask[i]);
-    for (int l = 0; !kPair && l < kLanes; ++l) {
-      if (((list.mask[i] >> l) & 1u) == 0) o.a[l] = o.a[candidate];
-    }
-    const Mask active = mask_from_bits(list.mask[i]);
-    load_convex(t.hulls, kind_b, w.pose_rows, o.b, b);
-    Manifold<Isotropic, N> m;
-    Vec3 origin_a;
-    // B is moved for the search, and back.
-    const auto at_touch = [&](auto&& collide_now) {
-      const Vec3 origin_b = b.p;
-      Mask lanes = active;
-      TouchSearch<Isotropic, N> touch;
-      if (search) {
-        touch.start(t, rows.velocity(t, w, code, origin_b), active, kind_b == ShapeKind::sphere);
-      }
-      for (;;) {
-        collide_now(lanes);
-        if (!search || !touch.go_on(m)) break;
-        b.p = origin_b + touch.way();
-        lanes = touch.going();
-      }
-      b.p = origin_b;
-    };
-    if (!kPair && kind_a == ShapeKind::plane) {
-      PlanePose plane;
-      load_pose(base_a, o.a, plane);
-      origin_a = zero_of<Vec3>();
-      if constexpr (N == 1) {
-        collide_plane_point(plane, b, m);
-      } else {
-        collide_plane_convex(t, plane, b, m);
-      }
-    } else if (!kPair && kind_a == ShapeKind::tile) {
-      Tile tile;
-      load_tile(base_a, o.a, b, active, tile, a);
-      if (!any(tile.there)) continue;
-      origin_a = a.p;
-      at_touch([&](Mask lanes) { collide_tile<N>(t, a, tile, b, lanes, m); });
-    } else {
-      load_convex(kPair ? t.hulls : nullptr, kind_a, base_a, o.a, a);
-      origin_a = a.p;
-      const ConvexShape &first = exchanged ? b : a, &second = exchanged ? a : b;
-      at_touch([&](Mask lanes) {
-        if constexpr (N == 1) {
-          collide_convex_point(t, first, nullptr, second, lanes, m);
-        } else {
-          collide_convex_pair(t, first, nullptr, second, lanes, m);
-        }
-        if (exchanged) exchange_sides(m);
-      });
-    }
-    add_contact(t, g, w, pairs.list, pairs, m, active, code, list.key + i * kLanes, origin_a, b.p);
-  }
-}
-
-inline void collide_convex(const Constants& t, const Group& g, kernels::Scratch* scratch) {
-  Work& w = work_of(scratch);
-  const ListId list = t.pair_class[w.class_index].list;
-  list_candidates(t, w);
-  if (is_multi(list)) {
-    is_fixed(list) ? collide_convex_list<4, false>(t, g, w) : collide_convex_list<4, true>(t, g, w);
-  } else {
-    is_fixed(list) ? collide_convex_list<1, false>(t, g, w) : collide_convex_list<1, true>(t, g, w);
   }
 }
 

@@ -11,7 +11,10 @@ namespace manyworlds::kernels {
 // shared inline function could put one library's instructions into another's calls.
 
 inline constexpr int kMaxVertices = 8;
-inline constexpr int kMaxHullVertices = 64;
+inline constexpr int kMaxOutline = 64;   // vertices of a hull's face as contacts see it
+inline constexpr int kFaceCodes = 4000;  // of hulls, that contacts tell apart
+inline constexpr int kCornerBlock = 16;  // as many as the most lanes there are
+inline constexpr int kMapCells = 16;     // of directions, along a side of a face of the cube
 
 template <template <class> class Row>
 inline constexpr int row_size = static_cast<int>(sizeof(Row<float>) / sizeof(float));
@@ -62,16 +65,22 @@ struct LinkRow {
   T before[2], after[2];     // last normals at its ends
 };
 
-// Corners of a hull, in units of its half extents, so that one that is stretched has the same:
+// A hull in units of its half extents, so that one that is stretched has the same table. Rows of
+// four numbers:
+//   size                  vertices, faces, rows before the map of its vertices, and before that of
+//                         its faces; 0: there is none
 //   vertices              x y z 0 of each
+//   the same in blocks    x of kCornerBlock vertices, then y, then z; the last is repeated
 //   faces                 m.x m.y m.z c | first count 0 0 of each: m . x <= c is the hull's side of
-//                         it, not unit; its outline has `count` vertices from row 4 `first` on
+//                         it, not unit; its outline has `count` vertices from row `first` on
 //   outlines              x y z 0 of each vertex, counter-clockwise seen from outside
-// They are 4 `at` numbers from SceneConstants::hulls on; those of a fixed hull follow its row.
+//   map of the vertices   which is the farthest (src/plan/hull_map.hpp), of large hulls
+//   map of the faces      which looks most along a direction, of large hulls whose sizes are fixed
+// It is 4 `at` numbers from SceneConstants::hulls on; that of a fixed hull follows its row.
 template <class T>
 struct HullRow {
   BoxRow<T> box;
-  T at, vertices, faces, pad;
+  T at, pad[3];
 };
 
 // A tile of a height field (kernels/collide/tile.hpp): one triangle of a cell that recurs.

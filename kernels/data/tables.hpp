@@ -121,9 +121,8 @@ struct ColliderTable {
   std::int32_t body;
   std::int32_t row;              // offset of its pose row in a lane's block
   std::uint32_t category, mask;  // collision filter
-  std::int32_t vertex_count;     // of a polygon or hull
-  std::int32_t face_count;       // of a hull
-  std::int32_t hull;             // where its corners are, in fours, in SceneConstants::hulls
+  std::int32_t vertex_count;     // of a polygon
+  std::int32_t hull;             // where its table is, in fours, in SceneConstants::hulls
 };
 
 template <class Real>

@@ -40,6 +40,7 @@ struct Float {
   Float() = default;
   MW_INLINE Float(Real x) : v(x) {}
   static MW_INLINE Float load(const Real* p) { return *p; }
+  static MW_INLINE Float load_unaligned(const Real* p) { return *p; }
   MW_INLINE void store(Real* p) const { *p = v; }
 };
 MW_INLINE Float operator+(Float a, Float b) { return a.v + b.v; }
@@ -86,6 +87,7 @@ struct Float {
   MW_INLINE Float(Real x) : v(x) {}
   MW_INLINE Float(Batch x) : v(x) {}
   static MW_INLINE Float load(const Real* p) { return Batch::load_aligned(p); }
+  static MW_INLINE Float load_unaligned(const Real* p) { return Batch::load_unaligned(p); }
   // The vector types of intrinsics may alias anything: after each of their stores compilers would
   // load again what they know of plans, counts and pointers. This one is memory of Reals.
   MW_INLINE void store(Real* p) const {
@@ -201,6 +203,20 @@ struct LaneNumber {
   Real lane[kLanes];
   MW_INLINE operator Float() const { return Float::load(lane); }
 };
+
+MW_INLINE Float lane_numbers() {
+  alignas(64) static constexpr Real kNumbers[] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                  8, 9, 10, 11, 12, 13, 14, 15};
+  return Float::load(kNumbers);
+}
+// Of one number, as fma() of many. std::fma would be a function that the kernels share.
+MW_INLINE Real fma(Real a, Real b, Real c) {
+  if constexpr (sizeof(Real) == sizeof(float)) {
+    return __builtin_fmaf(static_cast<float>(a), static_cast<float>(b), static_cast<float>(c));
+  } else {
+    return static_cast<Real>(__builtin_fma(a, b, c));
+  }
+}
 
 MW_INLINE bool any(Mask m) { return bits(m) != 0; }
 MW_INLINE bool all(Mask m) { return bits(m) == kAllLanes; }

@@ -10,11 +10,15 @@
 
 namespace manyworlds::MW_KERNEL_NAMESPACE {
 
-// Where every lane finds the faces of its hull.
-struct HullFaces {
-  const Real* corners;
-  alignas(64) std::int32_t first[kLanes], count[kLanes];
-  int most;  // faces, of any lane
+// Where every lane finds its hull (data/pose_rows.hpp).
+struct HullTables {
+  const Real* rows;
+  alignas(64) std::int32_t first_corner[kLanes], corners[kLanes], corner_map[kLanes];
+  alignas(64) std::int32_t block[kLanes];  // of corners
+  alignas(64) std::int32_t first_face[kLanes], faces[kLanes], face_map[kLanes];
+  int most_corners, most_faces;       // of any lane
+  bool shared;                        // all lanes have the same hull
+  bool corners_mapped, faces_mapped;  // all lanes have maps
 };
 
 struct ConvexShape {
@@ -23,10 +27,10 @@ struct ConvexShape {
   Mat3 r;
   Float radius;  // around the core: of spheres and capsules
   Float margin;  // how far its bounds reach beyond it, m; spheres and capsules do not tell
-  HullFaces faces;
-  Vec3 face_normal;  // of a tile
-  int vertices;      // of the hull that has most; the other lanes repeat their last
-  Vec3 vertex[kernels::kMaxHullVertices];  // from p, world axes
+  HullTables hull;
+  Vec3 face_normal;                    // of a tile
+  int vertices;                        // of a tile or a flat shape
+  Vec3 vertex[kernels::kMaxVertices];  // from p, world axes
 };
 
 struct Extent {
@@ -35,7 +39,7 @@ struct Extent {
 
 // What lies farthest out along a direction: a face, or an edge or a point of a shape that is round
 // there. A lane with fewer points repeats its last.
-inline constexpr int kMaxCorners = kernels::kMaxHullVertices;
+inline constexpr int kMaxCorners = kernels::kMaxOutline;
 struct Feature {
   int count;
   Vec3 corner[kMaxCorners];  // from p, world axes; counter-clockwise seen from outside
@@ -45,7 +49,7 @@ struct Feature {
   Mask face;
 };
 
-// Of polyhedra.
+// Of tiles and flat shapes.
 MW_INLINE Extent extent_of_vertices(const ConvexShape& s, Vec3 n) {
   const Float zero(Real(0));
   Float low = dot(s.vertex[0], n), high = low;

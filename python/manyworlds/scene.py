@@ -373,7 +373,7 @@ class Scene:
 
 
 def make_hull(points: Sequence[Numbers]) -> Hull:
-    """The convex hull of points (n, 3) in m. Raises ValueError if it is flat or has over 64 corners."""
+    """The convex hull of points (n, 3) in m. Raises ValueError if it is flat or has over 8192 corners."""
     return _core.make_hull(points)
 
 

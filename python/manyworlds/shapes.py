@@ -80,7 +80,7 @@ class Ellipsoid:
 
 @dataclass(slots=True)
 class Hull:
-    """The convex hull of 4 to 64 vertices (``make_hull`` finds them). Spatial."""
+    """The convex hull of 4 to 8192 vertices (``make_hull`` finds them). Spatial."""
 
     vertices: Sequence[Numbers] = field(default_factory=list)  # m, (n, 3)
 

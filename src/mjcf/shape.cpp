@@ -13,8 +13,6 @@
 namespace manyworlds::mjcf {
 namespace {
 
-constexpr std::size_t kMaxCorners = 64;  // of a Hull
-
 // Geoms that have a shape.
 struct GeomKind {
   mjtGeom type;
@@ -97,10 +95,10 @@ std::optional<std::string> hull_problem(const Model& model, int geom) {
   } catch (const SceneError& error) {
     const Issue& issue = error.issues().front();
     const std::string place = model.place(mjOBJ_MESH, mesh);
-    if (points.size() > kMaxCorners && issue.place == "vertices") {
-      return place +
-             " has a convex hull of more than 64 corners; expected at most 64; set "
-             "maxhullvert=\"64\" on the mesh";
+    if (points.size() > kMaxHullVertices && issue.place == "vertices") {
+      const std::string most = std::to_string(kMaxHullVertices);
+      return place + " has a convex hull of more than " + most + " corners; expected at most " +
+             most + "; set maxhullvert=\"" + most + "\" on the mesh";
     }
     return place + " has no hull: " + to_string(issue);
   }

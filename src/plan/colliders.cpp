@@ -81,7 +81,13 @@ void set_hull(const HullCorners& corners, PlanCollider& c) {
   if (!corners.middle.isZero(0)) c.offset += c.rotation * corners.middle;
   c.radius = corners.radius;
   c.inner_radius = corners.inner_radius;
-  c.hull_vertices = corners.vertices, c.hull_faces = corners.faces;
+}
+
+// Whether some worlds have another size of a shape.
+bool is_stretched(const PlanData& plan, int body, int shape) {
+  return std::any_of(plan.varied.begin(), plan.varied.end(), [&](const VariedNumber& n) {
+    return n.parameter == Parameter::size && n.of.body == body && n.of.shape == shape;
+  });
 }
 
 PlanFixed fixed_plane(const Vec3& normal, double offset, const Vec3& x, const Mat3& r) {
@@ -148,7 +154,7 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan
   PlanCollider c = local_collider(shape, plan);
   HullCorners corners;
   if (const auto* hull = std::get_if<Hull>(&shape.geometry)) {
-    corners = hull_corners(*hull);
+    corners = hull_corners(*hull, false);
     set_hull(corners, c);
   }
   const Vec3 x = body.position + body_rotation * c.offset;
@@ -187,8 +193,7 @@ PlanFixed fixed_shape(const Body& body, const Shape& shape, const PlanData& plan
     default: put_box(c, x, r, f);
   }
   if (c.kind == ShapeKind::hull) {
-    f.row.insert(f.row.end(),
-                 {0, static_cast<double>(corners.vertices), static_cast<double>(corners.faces), 0});
+    f.row.insert(f.row.end(), {0, 0, 0, 0});
     f.row.insert(f.row.end(), corners.rows.begin(), corners.rows.end());
   }
   return f;
@@ -228,7 +233,8 @@ void collect_colliders(PlanData& plan) {
       PlanCollider c = local_collider(body.shapes[k], plan);
       double half_thickness = c.inner_radius;
       if (const auto* hull = std::get_if<Hull>(&body.shapes[k].geometry)) {
-        const HullCorners corners = hull_corners(*hull);
+        const HullCorners corners =
+            hull_corners(*hull, is_stretched(plan, owner.scene_body, static_cast<int>(k)));
         set_hull(corners, c);
         half_thickness = corners.half_thickness;
         c.hull = put_corners(plan, corners);
@@ -250,6 +256,13 @@ void collect_colliders(PlanData& plan) {
       }
       plan.colliders.push_back(std::move(c));
     }
+  }
+  // Pose rows hold the place of a table as a number of float32.
+  constexpr std::size_t kMostRows = 1 << 24;
+  if (plan.hulls.size() / 4 > kMostRows) {
+    throw SceneError(
+        {{"shapes", "have hulls whose tables take " + std::to_string(plan.hulls.size() / 4) +
+                        " rows, must be at most " + std::to_string(kMostRows)}});
   }
   for (const Joint& joint : plan.scene.joints) {
     for (const BodyId body : {joint.body_a, joint.body_b}) {

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "src/plan/plan_data.hpp"
 #include "src/plan/substeps.hpp"
@@ -20,22 +19,6 @@ namespace manyworlds {
 namespace {
 
 constexpr double kPasses = 5;  // k: a fifth of the half thickness deep
-
-// Half the least and the largest width of a convex shape, m, across its faces and along its axes.
-// The least of a hull may be a little too large, since it can be between edges.
-struct Widths {
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-};
-Widths widths_of(const Convex& part, Space space) {
-  Widths out;
-  const auto across = [&](const Vec3& n) {
-    const double width = n.dot(part.support(n) - part.support(-n)) / 2 + part.radius;
-    out.least = std::min(out.least, width), out.most = std::max(out.most, width);
-  };
-  for (const Vec3& n : part.normals) across(n);
-  for (int i = 0; i < (space == Space::planar ? 2 : 3); ++i) across(part.axes.col(i));
-  return out;
-}
 
 // Whether the lowest point moves along the body when it turns: of others contacts hold the corners
 // or ends that come down next.
@@ -76,7 +59,7 @@ void for_each_need(const Scene& scene, Visit visit) {
       if (shape.filter.mask == 0) continue;
       for (const Convex& part : convex_parts(shape, {}, scene.space)) {
         if (!sheets && !rolls(shape, part)) continue;
-        const auto [c, a] = widths_of(part, scene.space);
+        const auto [c, a] = half_widths(part, scene.space);
         visit(BodyId(static_cast<int>(i)), fall / c, a / c,
               kPasses * fall / c * (a * a - c * c) / (a * c));
       }

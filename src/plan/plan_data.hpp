@@ -40,7 +40,7 @@ struct PlanBody {
 struct PlanCollider : ShapeForm {
   int body = -1;  // state body
   int scene_body = -1, shape = -1;
-  int hull = 0, hull_vertices = 0, hull_faces = 0;  // of a hull: where its corners are, in fours
+  int hull = 0;  // of a hull: where its table is, in fours
   Material material;
   int row = 0;
 };
@@ -126,7 +126,7 @@ struct PlanData {
   std::vector<int> state_body;  // per scene body: its row; -1: fixed
   std::vector<PlanCollider> colliders;
   std::vector<PlanFixed> fixed;
-  std::vector<double> hulls;  // corners of hulls that move (kernels/data/tables.hpp)
+  std::vector<double> hulls;  // tables of hulls that move (kernels/data/pose_rows.hpp)
   std::vector<PlanClass> classes;
   std::vector<PlanPart> parts;  // of joints, in their order
   PlanJointTrees trees_of_joints;
@@ -208,10 +208,10 @@ struct HullCorners {
   Vec3 middle, half;                    // m, of the bounding box, shape frame
   double radius = 0, inner_radius = 0;  // about the middle, m
   double half_thickness = 0;            // of a sphere inside, about the mean of the corners, m
-  int vertices = 0, faces = 0;
-  std::vector<double> rows;  // kernels/data/tables.hpp
+  std::vector<double> rows;             // HullRow (kernels/data/pose_rows.hpp)
 };
-HullCorners hull_corners(const Hull& hull);  // hulls.cpp
+// `stretched`: in some worlds it has another size.
+HullCorners hull_corners(const Hull& hull, bool stretched);  // hulls.cpp
 // Puts them with the plan's, unless they are there already; returns where, in fours.
 int put_corners(PlanData& plan, const HullCorners& corners);  // hulls.cpp
 

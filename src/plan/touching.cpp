@@ -33,16 +33,6 @@ struct Part {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 };
 
-double thickness_of(const Convex& part, Space space) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto across = [&](const Vec3& n) {
-    least = std::min(least, n.dot(part.support(n) - part.support(-n)) + 2 * part.radius);
-  };
-  for (const Vec3& n : part.normals) across(n);
-  for (int i = 0; i < (space == Space::planar ? 2 : 3); ++i) across(part.axes.col(i));
-  return least;
-}
-
 void find_extent(Part& part) {
   for (int k = 0; k < 3; ++k) {
     const Vec3 way = Vec3::Unit(k);
@@ -267,7 +257,7 @@ class Finder {
         }
         find_extent(part);
         if (body.motion == Motion::dynamic) {
-          part.thickness = thickness_of(part.convex, scene_.space);
+          part.thickness = 2 * half_widths(part.convex, scene_.space).least;
           part.low.array() -= kNearby * part.thickness;
           part.high.array() += kNearby * part.thickness;
           const Vec3 top = part.convex.support(-down) - part.convex.radius * down.normalized();

@@ -143,14 +143,31 @@ Separation swapped(const Separation& s) { return {s.distance, s.point_b, s.point
 
 Vec3 Convex::support(const Vec3& n) const {
   Vec3 best = points[0];
+  double most = n.dot(best);
   for (const Vec3& p : points) {
-    if (n.dot(p) > n.dot(best)) best = p;
+    const double along = n.dot(p);
+    if (along > most) most = along, best = p;
   }
   // In its own axes, so that it stays in a disc however little n points out of the disc's axis.
   const Vec3 along = (axes.transpose() * n).cwiseProduct(radii);
   const double length = along.norm();
   if (length == 0) return best;
   return best + axes * along.cwiseProduct(radii) / length;
+}
+
+Widths half_widths(const Convex& part, Space space) {
+  Widths out;
+  const auto take = [&](double width) {
+    const double half = width / 2 + part.radius;
+    out.least = std::min(out.least, half), out.most = std::max(out.most, half);
+  };
+  const auto across = [&](const Vec3& n) { take(n.dot(part.support(n) - part.support(-n))); };
+  if (part.widths.empty()) {
+    for (const Vec3& n : part.normals) across(n);
+  }
+  for (const double width : part.widths) take(width);
+  for (int i = 0; i < (space == Space::planar ? 2 : 3); ++i) across(part.axes.col(i));
+  return out;
 }
 
 Convex ball_of(const Vec3& x, double radius, Space space) {
@@ -196,7 +213,9 @@ std::vector<Convex> convex_parts(const Shape& shape, const Pose& pose, Space spa
 Separation separation(const Convex& a, const Convex& b) {
   if (a.half_space) return of_half_space(a, b);
   if (b.half_space) return swapped(of_half_space(b, a));
-  if (!a.radii.isZero(0) || !b.radii.isZero(0)) return search_separation(a, b);
+  if (!a.radii.isZero(0) || !b.radii.isZero(0) || !few_crossings(a, b)) {
+    return search_separation(a, b);
+  }
   const Widest widest = widest_gap(a, b);
   // Hulls that overlap: as they are when shifted until they touch.
   const double overlap = std::min(widest.gap, 0.0);

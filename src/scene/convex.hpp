@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "manyworlds/query.hpp"
@@ -23,11 +24,19 @@ struct Convex {
   // Each point stands for an ellipsoid of these radii along the axes, m: of a cylinder for a disc.
   Vec3 radii = Vec3::Zero();
   // Of a hull in space: the normals of its faces are all its normals; normals[i] . p <= reach[i].
-  std::vector<double> reach;
+  // widths[i]: how far it reaches along normals[i] from one end to the other.
+  std::vector<double> reach, widths;
 
   // The point that lies farthest along n, without the radius.
   Vec3 support(const Vec3& n) const;
 };
+
+// Half the least and the largest width of a convex part, m, across its faces and along its axes.
+// The least of a hull may be a little too large, since it can be between edges.
+struct Widths {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+};
+Widths half_widths(const Convex& part, Space space);
 
 // All points within the radius of x, or of the segment between two points.
 Convex ball_of(const Vec3& x, double radius, Space space);

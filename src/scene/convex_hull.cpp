@@ -13,6 +13,7 @@
 #include "manyworlds/hull.hpp"
 #include "manyworlds/plan.hpp"
 #include "src/base/float_mode.hpp"
+#include "src/base/remembered.hpp"
 #include "src/scene/checks.hpp"
 
 extern "C" {
@@ -85,9 +86,7 @@ Vec3 area_of(const std::vector<Vec3>& points, const std::vector<int>& outline) {
   return area;
 }
 
-}  // namespace
-
-ConvexHull convex_hull(const std::vector<Vec3>& points) {
+ConvexHull make_convex_hull(const std::vector<Vec3>& points) {
   ConvexHull out;
   const double extent = extent_of(points);
   if (!(extent > 0)) return out;
@@ -100,6 +99,11 @@ ConvexHull convex_hull(const std::vector<Vec3>& points) {
     index = static_cast<int>(out.vertices.size());
     out.vertices.push_back(points[static_cast<std::size_t>(point)]);
   }
+  Eigen::Matrix<double, Eigen::Dynamic, 3> all(static_cast<Eigen::Index>(out.vertices.size()), 3);
+  for (Eigen::Index i = 0; i < all.rows(); ++i) {
+    all.row(i) = out.vertices[static_cast<std::size_t>(i)];
+  }
+  Eigen::VectorXd heights(all.rows());
   for (Facet& f : facets) {
     HullFace face;
     for (const int i : f.outline) face.outline.push_back(corner[i]);
@@ -110,14 +114,10 @@ ConvexHull convex_hull(const std::vector<Vec3>& points) {
     }
     if (face.outline.size() < 3 || area.isZero(0)) continue;
     face.normal = area.normalized();
-    double low = std::numeric_limits<double>::max();
-    face.offset = -low;
-    for (const Vec3& v : out.vertices) {
-      const double height = face.normal.dot(v);
-      low = std::min(low, height);
-      face.offset = std::max(face.offset, height);
-    }
-    if (face.offset - low < kThinnest * extent) return {};  // flat
+    heights.noalias() = all * face.normal;
+    face.offset = heights.maxCoeff();
+    face.thickness = face.offset - heights.minCoeff();
+    if (face.thickness < kThinnest * extent) return {};  // flat
     // Qhull's order depends on coordinates, ours on that of the points alone.
     std::vector<int>& around = face.outline;
     std::rotate(around.begin(), std::min_element(around.begin(), around.end()), around.end());
@@ -127,6 +127,13 @@ ConvexHull convex_hull(const std::vector<Vec3>& points) {
             [](const HullFace& a, const HullFace& b) { return a.outline < b.outline; });
   if (out.faces.size() < 4) out.faces.clear();
   return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const ConvexHull> convex_hull(const std::vector<Vec3>& points) {
+  static Remembered<Vec3, ConvexHull> last(1 << 18);
+  return last.get(points, [&] { return make_convex_hull(points); });
 }
 
 TriangleMesh surface(const ConvexHull& hull) {
@@ -154,14 +161,14 @@ Hull make_hull(const std::vector<Vec3>& points) {
   }
   Hull out;
   if (issues.empty()) {
-    const detail::ConvexHull hull = detail::convex_hull(points);
-    if (hull.flat()) {
+    const std::shared_ptr<const detail::ConvexHull> hull = detail::convex_hull(points);
+    if (hull->flat()) {
       checker.add("points", "lie in a plane, must enclose a volume");
-    } else if (hull.vertices.size() > detail::kMaxHullVertices) {
-      checker.add("vertices", "are " + std::to_string(hull.vertices.size()) + ", must be at most " +
-                                  std::to_string(detail::kMaxHullVertices));
+    } else if (hull->vertices.size() > kMaxHullVertices) {
+      checker.add("vertices", "are " + std::to_string(hull->vertices.size()) +
+                                  ", must be at most " + std::to_string(kMaxHullVertices));
     }
-    out.vertices = hull.vertices;
+    out.vertices = hull->vertices;
   }
   if (!issues.empty()) throw SceneError("hull", std::move(issues));
   return out;

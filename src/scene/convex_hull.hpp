@@ -1,6 +1,7 @@
 // The faces of convex hulls, by Qhull. Used inside src only.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "manyworlds/mesh.hpp"
@@ -8,12 +9,12 @@
 namespace manyworlds::detail {
 
 inline constexpr std::size_t kFewestHullVertices = 4;
-inline constexpr std::size_t kMaxHullVertices = 64;
 
 struct HullFace {
   std::vector<int> outline;  // of vertices, counter-clockwise seen from outside
   Vec3 normal;               // unit, outward
   double offset;             // normal . p <= offset for all points of the hull, m
+  double thickness;          // how far the hull reaches back from it, m
 };
 struct ConvexHull {
   std::vector<Vec3> vertices;  // the corners, in the order of the points
@@ -22,7 +23,8 @@ struct ConvexHull {
 };
 
 // Of 4 or more finite points. Faces within a millionth of the extent of one plane are one face.
-ConvexHull convex_hull(const std::vector<Vec3>& points);
+// The last hulls are remembered: checks, masses, plans and pictures ask for the same ones.
+std::shared_ptr<const ConvexHull> convex_hull(const std::vector<Vec3>& points);
 
 // Its surface as triangles.
 TriangleMesh surface(const ConvexHull& hull);

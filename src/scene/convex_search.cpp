@@ -69,8 +69,10 @@ Separation search_separation(const Convex& a, const Convex& b) {
     if (c->radii.x() > 0 && c->radii.z() == 0)
       look(between - c->axes.col(2) * between.dot(c->axes.col(2)));
   }
-  for (const Vec3& u : a.directions) {
-    for (const Vec3& v : b.directions) look(u.cross(v));
+  if (few_crossings(a, b)) {
+    for (const Vec3& u : a.directions) {
+      for (const Vec3& v : b.directions) look(u.cross(v));
+    }
   }
 
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();

@@ -227,8 +227,7 @@ void TablesOf<Real>::add_shapes(const PlanData& plan) {
   for (const PlanCollider& c : plan.colliders) {
     const Filter& filter = filter_of(plan, c);
     const auto vertices = static_cast<std::int32_t>(c.vertices.size());
-    colliders_.push_back({c.kind, c.body, c.row, filter.category, filter.mask,
-                          c.hull_vertices > 0 ? c.hull_vertices : vertices, c.hull_faces, c.hull});
+    colliders_.push_back({c.kind, c.body, c.row, filter.category, filter.mask, vertices, c.hull});
     collider_row_.push_back(c.row);
     collider_body_.push_back(c.body);
   }

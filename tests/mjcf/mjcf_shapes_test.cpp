@@ -178,13 +178,13 @@ TEST_CASE("a mesh of too many corners is an error that maxhullvert mends", "[mjc
   const std::string geom =
       "<body name='b'><freejoint/><geom name='g' type='mesh' mesh='m'/></body>";
   try {
-    load_mjcf_string(world_of(geom, mesh_of(ball_points(200))));
+    load_mjcf_string(world_of(geom, mesh_of(ball_points(9000))));
     FAIL("expected an error");
   } catch (const MjcfError& error) {
     REQUIRE(error.problems().size() == 1);
     CHECK_THAT(error.what(), Catch::Contains("geom 'g' of body 'b'") &&
-                                 Catch::Contains("mesh 'm' has a convex hull of more than 64 "
-                                                 "corners; expected at most 64") &&
+                                 Catch::Contains("mesh 'm' has a convex hull of more than 8192 "
+                                                 "corners; expected at most 8192") &&
                                  Catch::Contains("maxhullvert"));
   }
   const Scene scene =

@@ -82,6 +82,8 @@ void place(const Scene& scene, std::vector<Pose>& pose, Random& random) {
   pose[mover] = at(high);
 }
 
+}  // namespace
+
 void write_poses(Batch& batch, const std::vector<std::vector<Pose>>& poses) {
   const Space space = space_of(batch);
   const Plan& plan = batch.plan(0);
@@ -102,6 +104,8 @@ void write_poses(Batch& batch, const std::vector<std::vector<Pose>>& poses) {
   batch.write(Field::position, x);
   batch.write(Field::orientation, q);
 }
+
+namespace {
 
 class Judge {
  public:

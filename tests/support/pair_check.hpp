@@ -50,6 +50,9 @@ struct PairResult {
 // to touching. Planar scenes get planar poses.
 PairResult check_pair(const Scene& scene, const Table& table, const PairPromise& promise, int poses,
                       Random& random);
+// Of all bodies of all worlds, in the order of the scene.
+void write_poses(Batch& batch, const std::vector<std::vector<Pose>>& poses);
+
 // Random shapes for check_pair, 0.1 to 0.6 m in half extent.
 Polygon random_polygon(Random& random, int vertices);
 Box random_box(Random& random);

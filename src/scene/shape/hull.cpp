@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manyworlds/hull.hpp"
 #include "src/scene/convex_hull.hpp"
 #include "src/scene/mesh_moments.hpp"
 #include "src/scene/shape/traits.hpp"
@@ -26,9 +27,9 @@ class HullTraits final : public TraitsOf<Hull> {
  protected:
   void examine(Checker& checker, const Hull& hull) const override {
     const std::vector<Vec3>& vertices = hull.vertices;
-    if (vertices.size() < detail::kFewestHullVertices ||
-        vertices.size() > detail::kMaxHullVertices) {
-      checker.add("vertices", "are " + std::to_string(vertices.size()) + ", must be 4 to 64");
+    if (vertices.size() < detail::kFewestHullVertices || vertices.size() > kMaxHullVertices) {
+      checker.add("vertices", "are " + std::to_string(vertices.size()) + ", must be 4 to " +
+                                  std::to_string(kMaxHullVertices));
       return;
     }
     bool good = true;
@@ -38,23 +39,21 @@ class HullTraits final : public TraitsOf<Hull> {
       extent = std::max(extent, (vertices[i] - vertices[0]).norm());
     }
     if (!good || !detail::check_distinct(checker, vertices, extent)) return;
-    const detail::ConvexHull solid = detail::convex_hull(vertices);
-    if (solid.flat()) {
+    const auto solid = detail::convex_hull(vertices);
+    if (solid->flat()) {
       checker.add("vertices", "lie in a plane, must enclose a volume");
       return;
     }
-    for (const detail::HullFace& f : solid.faces) {
-      double low = f.offset;
-      for (const Vec3& v : vertices) low = std::min(low, f.normal.dot(v));
-      if (f.offset - low >= detail::kMinSize) continue;
-      checker.add("vertices", "are " + detail::number_text(f.offset - low) +
+    for (const detail::HullFace& f : solid->faces) {
+      if (f.thickness >= detail::kMinSize) continue;
+      checker.add("vertices", "are " + detail::number_text(f.thickness) +
                                   " m thick, must be at least " +
                                   detail::number_text(detail::kMinSize));
       return;
     }
   }
   MassProperties mass_of(const Hull& hull, double density, Space) const override {
-    const TriangleMesh mesh = detail::surface(detail::convex_hull(hull.vertices));
+    const TriangleMesh mesh = detail::surface(*detail::convex_hull(hull.vertices));
     const Vec3 middle = detail::mesh_middle(mesh);
     const detail::MeshMoments about_middle = detail::mesh_moments(mesh, middle);
     // The centre of a symmetric hull comes out of sums: what is only rounding is zero.
@@ -75,13 +74,14 @@ class HullTraits final : public TraitsOf<Hull> {
   }
   std::vector<Convex> parts_of(const Hull& hull, const Vec3& x, const Mat3& r,
                                Space) const override {
-    const detail::ConvexHull solid = detail::convex_hull(hull.vertices);
+    const auto solid = detail::convex_hull(hull.vertices);
     Convex c;
     const auto point = [&](int i) { return c.points[static_cast<std::size_t>(i)]; };
-    for (const Vec3& v : solid.vertices) c.points.push_back(x + r * v);
-    for (const detail::HullFace& f : solid.faces) {
+    for (const Vec3& v : solid->vertices) c.points.push_back(x + r * v);
+    for (const detail::HullFace& f : solid->faces) {
       c.normals.push_back(r * f.normal);
       c.reach.push_back(f.offset + c.normals.back().dot(x));
+      c.widths.push_back(f.thickness);
       for (std::size_t i = 0; i < f.outline.size(); ++i) {
         const int from = f.outline[i], to = f.outline[(i + 1) % f.outline.size()];
         if (from > to) continue;  // once from either face
@@ -96,10 +96,10 @@ class HullTraits final : public TraitsOf<Hull> {
     return {kernels::ShapeKind::hull};
   }
   Surface surface_of(const Hull& hull, const SurfaceOptions&) const override {
-    const detail::ConvexHull solid = detail::convex_hull(hull.vertices);
-    const auto corner = [&](int i) { return solid.vertices[static_cast<std::size_t>(i)]; };
+    const auto solid = detail::convex_hull(hull.vertices);
+    const auto corner = [&](int i) { return solid->vertices[static_cast<std::size_t>(i)]; };
     Surface out;
-    for (const detail::HullFace& f : solid.faces) {
+    for (const detail::HullFace& f : solid->faces) {
       std::vector<Vec3> corners;
       for (std::size_t i = 0; i < f.outline.size(); ++i) {
         const int from = f.outline[i], to = f.outline[(i + 1) % f.outline.size()];
