@@ -1,4 +1,4 @@
-// The last results of a function that takes long and is asked for the same again and again.
+// The last results of a function that takes long and is often called with the same arguments.
 #pragma once
 
 #include <cstring>

@@ -23,7 +23,7 @@ struct ConvexHull {
 };
 
 // Of 4 or more finite points. Faces within a millionth of the extent of one plane are one face.
-// The last hulls are remembered: checks, masses, plans and pictures ask for the same ones.
+// The last hulls are remembered: checks, masses, plans and pictures require the same ones.
 std::shared_ptr<const ConvexHull> convex_hull(const std::vector<Vec3>& points);
 
 // Its surface as triangles.

@@ -230,7 +230,7 @@ TEST_CASE("a large hull touches a plane with its lowest corner", "[fast][collide
   }
 }
 
-// compile() asks for distances of bodies that stand, too.
+// compile() computes distances of bodies at rest, too.
 TEST_CASE("the distance between large hulls is the largest separation", "[fast][query]") {
   Random random(9);
   int local = 0, touching = 0;
